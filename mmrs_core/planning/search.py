@@ -9,6 +9,7 @@ from math import inf, prod
 from random import Random
 from typing import TypeAlias
 
+from mmrs_core.planning.allocation import allocated
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.team import Team
@@ -20,6 +21,9 @@ _STEPS = 40
 
 _EFFORT = 3000
 """Jobs times robots times schedules tried, at most, where that is less."""
+
+_MOST_PAIRS = 10_000
+"""Jobs times robots up to which decisions that leave robots open are tried beside those of tours."""
 
 _STEPS_TO_BEGIN = 200
 """Schedules that are tried as long as none does all jobs."""
@@ -46,7 +50,11 @@ def find_decisions(
         *(Decisions(order, {job.name: (name,) for job in jobs}) for name in _only_ones(team, jobs)),
     ]
     starts = [replace(each, in_turns=in_turns) for each in starts]
-    tried = [(each, schedule(team, jobs, each)) for each in starts]
+    tried = list(allocated(team, jobs, seed, in_turns=in_turns))
+    if len(jobs) * len(team.pilots) <= _MOST_PAIRS or not any(
+        isinstance(each, Schedule) for _, each in tried
+    ):
+        tried += [(each, schedule(team, jobs, each)) for each in starts]
     best, found = min(tried, key=lambda pair: cost_of(team, pair[1]))
     random, idle = Random(seed), 0
     steps = min(_STEPS, max(4, _EFFORT // max(1, len(jobs) * len(team.pilots))))

@@ -51,6 +51,7 @@ class Team:
             footprints or different clearances make.
         mixtures: by name of task: the sorts that can share it, where there are several.
         refusals: by (task, robot): why the robot cannot do the task.
+        kinds: by robot: the first that does every work as it does.
         starts: by (robot, delay): the states in which schedules have begun.
         done: what has become of jobs in earlier schedules; see `schedule`.
     """
@@ -84,7 +85,7 @@ class Team:
             )
             for robot in scene.robots
         }
-        self._kinds = _kinds_of(scene, self.pilots)
+        self.kinds = _kinds_of(scene, self.pilots)
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
@@ -133,7 +134,7 @@ class Team:
         if work is None:
             self.refusals.setdefault(key, "has no work for it")
             return None
-        alike = (task.name, self._kinds[pilot.robot.name])
+        alike = (task.name, self.kinds[pilot.robot.name])
         if alike not in self._faults:
             self._faults[alike] = "; ".join(faults(work, pilot))
         if self._faults[alike]:
@@ -149,7 +150,7 @@ class Team:
         layout = self._layout(work, group, robots)
         able, reasons = [], dict[str, str]()
         for name in group:
-            kind = self._kinds[name]
+            kind = self.kinds[name]
             if (task, kind) not in self._layouts:
                 self._layouts[task, kind] = layout
                 try:
@@ -171,11 +172,11 @@ class Team:
 
     def forwards(self, task: str, robot: str) -> Material | None:
         """Return the material of a task for a robot; None if it cannot do the task."""
-        return self._materials.get((task, self._kinds[robot], False))
+        return self._materials.get((task, self.kinds[robot], False))
 
     def backwards(self, task: str, robot: str) -> Material | None:
         """Return the material in the other direction; None if it has only one."""
-        kind = self._kinds[robot]
+        kind = self.kinds[robot]
         key = (task, kind, True)
         if key not in self._materials:
             layout = self._layouts[task, kind]

@@ -1,0 +1,278 @@
+"""Who does which jobs in which order, found among tours with the seconds that robots take between jobs.
+
+What comes of it goes through `schedule`, which judges it as any other decisions: tours count a job as one
+stop, or as several where several robots do it, each with its part of the work; they wait for the clock, but
+for other robots only from the second round on, as long as they did in the schedule of the round before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil, inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.jobs import Job
+from mmrs_core.planning.materials import Material
+from mmrs_core.planning.ruin import Field, Search, Tours
+from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.team import Team
+from mmrs_core.scene import Position
+from mmrs_core.scene.timing import Rates
+
+_NEAREST = 10
+"""Other stops next to which a stop may be inserted."""
+
+_NEAREST_ROBOTS = 8
+
+_ROUTED = 12
+"""Nearest stops to and from which routes are found; to and from others, straight ones are estimated."""
+
+_FEWEST = 6
+"""Jobs below which the search among schedules tries most of what there is."""
+
+_STEPS_PER_STOP = 40
+_MOST_STEPS = 4000
+_ROUNDS = 2
+
+_PIECES_PER_TOUR = 3
+"""Pieces of a mean tour into which work that robots may share is cut."""
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class _Stop:
+    """A job, or a part of one that one of several robots does: which of how many alike."""
+
+    job: str
+    part: int = 0
+    parts: int = 1
+
+
+def allocated(
+    team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False
+) -> Iterator[tuple[Decisions, Schedule | Shortfall]]:
+    """Yield decisions that came of searches for tours, with their schedules; none for few jobs.
+
+    Args:
+        team: of the scene.
+        jobs: in an order in which none comes before one that it waits for.
+        seed: of the searches.
+        in_turns: see `Decisions`; then only the sum of the tours counts.
+    """
+    stops = list(_stops(team, jobs))
+    if len(jobs) < _FEWEST or not stops:
+        return
+    field = _Fields(team, stops).field()
+    earliest = field.earliest
+    waits = any(job.after for job in jobs)
+    for turn in range(_ROUNDS if waits else 1):
+        search = Search(field, seed + turn, (0.0, 1.0) if in_turns else (1.0, 0.1))
+        for _ in search.run(min(_MOST_STEPS, _STEPS_PER_STOP * len(stops))):
+            pass
+        decisions = replace(_decisions(team, jobs, stops, search.best), in_turns=in_turns)
+        found = schedule(team, jobs, decisions)
+        yield decisions, found
+        if isinstance(found, Shortfall):
+            return
+        ends = {name: end for name, (_, end) in found.spans.items()}
+        ready = {job.name: max((ends.get(name, 0.0) for name in job.after), default=0.0) for job in jobs}
+        field = replace(
+            field, earliest=[max(own, ready[stop.job]) for own, stop in zip(earliest, stops, strict=True)]
+        )
+
+
+def _stops(team: Team, jobs: Sequence[Job]) -> Iterator[_Stop]:
+    """Yield the stops of all jobs but choices, which the schedule gives to the robot that is back first."""
+    single = [job.name for job in jobs if job.choice is None and job.tasks()]
+    seconds = {name: _seconds(team, name) for name in single}
+    piece = sum(seconds.values()) / (_PIECES_PER_TOUR * len(team.pilots))
+    for name in single:
+        most = team.sharers(name)
+        wanted = team.scene.task(name).wanted
+        parts = wanted or max(1, min(most, ceil(seconds[name] / piece - 0.5) if piece > 0.0 else 1))
+        laid_out = [each for robot in team.able(name) if (each := team.forwards(name, robot)) is not None]
+        parts = min(parts, max(map(len, laid_out), default=0))
+        yield from (_Stop(name, i, parts) for i in range(parts))
+
+
+def _seconds(team: Team, task: str) -> float:
+    materials = (
+        team.forwards(task, robot) for robot in dict.fromkeys(team.kinds[robot] for robot in team.able(task))
+    )
+    return max((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
+
+
+def _decisions(team: Team, jobs: Sequence[Job], stops: Sequence[_Stop], tours: Tours) -> Decisions:
+    """Return the decisions of tours: jobs as early as they begin there, those with priority first."""
+    priority = {task.name: task.priority for task in team.scene.tasks}
+    ranks = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
+    begins, robots = dict[str, float](), dict[str, set[int]]()
+    for i, stop in enumerate(stops):
+        begins[stop.job] = min(begins.get(stop.job, inf), tours.begins[i])
+        robots.setdefault(stop.job, set()).add(tours.robot[i])
+    order = sorted((job.name for job in jobs), key=lambda name: (-ranks[name], begins.get(name, 0.0)))
+    names = list(team.pilots)
+    groups = {job: tuple(names[i] for i in sorted(mine)) for job, mine in robots.items()}
+    return Decisions(tuple(order), groups)
+
+
+class _Fields:
+    """The seconds between stops: routed where robots will go, estimated where they hardly will."""
+
+    def __init__(self, team: Team, stops: Sequence[_Stop]) -> None:
+        self._team, self._stops = team, stops
+        self._pilots = list(team.pilots.values())
+        self._kinds = list(dict.fromkeys(team.kinds.values()))
+
+    def field(self) -> Field:
+        """Return the field of all stops."""
+        tasks = [self._team.scene.task(stop.job) for stop in self._stops]
+        kinds = [self._kinds.index(self._team.kinds[name]) for name in self._team.pilots]
+        out, back = np.full((2, len(self._pilots), len(self._stops)), inf)
+        go = np.full((len(self._kinds), len(self._stops), len(self._stops)), inf)
+        work = np.zeros((len(self._kinds), len(self._stops)))
+        for k, kind in enumerate(self._kinds):
+            materials = [self._part(stop, kind) for stop in self._stops]
+            able = [i for i, each in enumerate(materials) if each is not None]
+            robots = [r for r, each in enumerate(kinds) if each == k]
+            legs = _Legs([self._pilots[r] for r in robots], [each for each in materials if each is not None])
+            work[k, able] = legs.work
+            go[k][np.ix_(able, able)] = legs.between()
+            out[np.ix_(robots, able)], back[np.ix_(robots, able)] = legs.home()
+        return Field(
+            kinds=kinds,
+            out=out.ravel().tolist(),
+            go=go.ravel().tolist(),
+            back=back.ravel().tolist(),
+            work=work.ravel().tolist(),
+            near=_nearest(go.min(axis=0)),
+            near_robots=_nearest_robots(out),
+            apart=[self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)],
+            limits=[pilot.limit for pilot in self._pilots],
+            recharges=[pilot.kinematics.recharge or 0.0 for pilot in self._pilots],
+            earliest=[task.earliest or 0.0 for task in tasks],
+            deadlines=[inf if task.deadline is None else task.deadline for task in tasks],
+            ranks=[task.priority for task in tasks],
+        )
+
+    def _others(self, index: int) -> list[int]:
+        stop = self._stops[index]
+        first = index - stop.part
+        return [i for i in range(first, first + stop.parts) if i != index]
+
+    def _part(self, stop: _Stop, robot: str) -> Material | None:
+        """Return the material of a stop, part of a job's, for a robot; None if it cannot do the job."""
+        whole = self._team.forwards(stop.job, robot)
+        if whole is None or len(whole) < stop.parts or stop.parts == 1:
+            return whole
+        begin, end = (len(whole) * i // stop.parts for i in (stop.part, stop.part + 1))
+        return whole.only(begin, end - 1)
+
+
+class _Legs:
+    """What robots of one kind take from stop to stop, and from and to their homes.
+
+    Attributes:
+        work: seconds at each stop, from where a robot comes to first.
+    """
+
+    def __init__(self, pilots: Sequence[Pilot], materials: Sequence[Material]) -> None:
+        self._pilots, approaches = pilots, [each.approach(0) for each in materials]
+        self._begins = [each.via[0] for each in approaches]
+        self._speeds = [each.speed for each in approaches]
+        self._ends = [each.last(len(each) - 1) for each in materials]
+        travel = pilots[0].travel
+        self.work = [
+            material.seconds(0, len(material) - 1)
+            + sum(travel.at_speed(travel.hop(*leg), approach.speed).seconds for leg in pairwise(approach.via))
+            for material, approach in zip(materials, approaches, strict=True)
+        ]
+
+    def between(self) -> Matrix:
+        """Return (stops, stops) the seconds from the end of one to the begin of another."""
+        found = self._straight(_places(self._ends), _places(self._begins), self._speeds)
+        for i, row in enumerate(np.argsort(found, axis=1, kind="stable")[:, :_ROUTED].tolist()):
+            for j in row:
+                found[i, j] = self._routed(self._pilots[0], self._ends[i], j)
+        return found
+
+    def home(self) -> tuple[Matrix, Matrix]:
+        """Return (robots, stops) the seconds from homes to stops, and from stops until robots are back."""
+        kinematics = self._pilots[0].kinematics
+        homes, begins, ends = (_places(each) for each in (self._homes(), self._begins, self._ends))
+        up, down = np.zeros(len(begins)), np.zeros(len(ends))
+        if kinematics.launches:
+            ground = float(homes[:, 2].mean())
+            up = np.array([kinematics.launching(height - ground) for height in begins[:, 2].tolist()])
+            down = np.array([kinematics.landing(height - ground) for height in ends[:, 2].tolist()])
+            homes, begins, ends = (each * (1.0, 1.0, 0.0) for each in (homes, begins, ends))
+        out = self._straight(homes, begins, self._speeds) + up
+        back = self._straight(ends, homes, [None] * len(homes)).T + down
+        near = np.argsort(out, axis=0, kind="stable")[:_ROUTED].T
+        for stop, robots in enumerate(near.tolist()):
+            for robot in robots:
+                pilot = self._pilots[robot]
+                out[robot, stop] = self._routed(pilot, None, stop)
+                back[robot, stop] = pilot.exit_seconds(self._ends[stop])
+        return out, back
+
+    def _homes(self) -> list[Position]:
+        return [pilot.robot.home for pilot in self._pilots]
+
+    def _routed(self, pilot: Pilot, start: Position | None, stop: int) -> float:
+        """Return the seconds of the route from a place to a stop, None: from home; inf if there is none."""
+        goal, travel = self._begins[stop], pilot.travel
+        try:
+            route = travel.leave(goal) if start is None else travel.go(start, goal)
+        except UnreachableError:
+            return inf
+        return 0.0 if start == goal else travel.at_speed(route, self._speeds[stop]).seconds
+
+    def _straight(self, starts: Matrix, goals: Matrix, speeds: Sequence[float | None]) -> Matrix:
+        """Return (starts, goals) the seconds of straight legs, at the speeds of the goals."""
+        level: Matrix = np.linalg.norm(starts[:, None, :2] - goals[None, :, :2], axis=2)
+        rise = goals[None, :, 2] - starts[:, None, 2]
+        found: Matrix = np.empty(level.shape)
+        for speed in dict.fromkeys(speeds):
+            columns = [j for j, each in enumerate(speeds) if each == speed]
+            rates = self._pilots[0].kinematics.rates(speed)
+            found[:, columns] = _leg_seconds(rates, level[:, columns], rise[:, columns])
+        return found
+
+
+def _places(positions: Sequence[Position]) -> Matrix:
+    return np.array(positions, dtype=np.float64).reshape(-1, 3)
+
+
+def _leg_seconds(rates: Rates, level: Matrix, rise: Matrix) -> Matrix:
+    """Return the seconds of legs so long and so high, from a stop to a stop if level."""
+    lengths = np.concatenate([[0.0], np.geomspace(0.1, max(1.0, float(level.max(initial=1.0))), 200)])
+    seconds = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (each, 0.0, 0.0)) for each in lengths.tolist()]
+    heights, which = np.unique(rise, return_inverse=True)
+    upright = np.array([rates.upright(each) for each in heights.tolist()])
+    found: Matrix = np.maximum(np.interp(level, lengths, seconds), upright[which].reshape(rise.shape))
+    return found
+
+
+def _nearest(go: Matrix) -> list[list[int]]:
+    """Return, by stop, the others from which robots come there soonest, or to which they do."""
+    both = np.minimum(go, go.T)
+    np.fill_diagonal(both, inf)
+    count = min(_NEAREST, len(go) - 1)
+    found: list[list[int]] = np.argsort(both, axis=1, kind="stable")[:, :count].tolist()
+    return found
+
+
+def _nearest_robots(out: Matrix) -> list[list[int]]:
+    """Return, by stop, the robots that are there soonest; those at one place take turns."""
+    robots, stops = out.shape
+    turn = (np.arange(robots)[None, :] - np.arange(stops)[:, None]) % robots
+    found: list[list[int]] = np.lexsort((turn, out.T.round(6)), axis=1)[:, :_NEAREST_ROBOTS].tolist()
+    return found

@@ -1,0 +1,104 @@
+from itertools import permutations, product
+from math import dist, inf
+from random import Random
+
+import pytest
+
+from mmrs_core.planning.ruin import Field, Search
+
+
+def field(homes, stops, **features):
+    """Return a field in the plane for robots of one kind that go 1 m/s."""
+    n, m = len(stops), len(homes)
+    out = [dist(home, stop) for home in homes for stop in stops]
+    near = [sorted(set(range(n)) - {i}, key=lambda j, i=i: dist(stops[i], stops[j])) for i in range(n)]
+    plain = {
+        "kinds": [0] * m,
+        "out": out,
+        "go": [dist(one, two) for one in stops for two in stops],
+        "back": out,
+        "work": [0.0] * n,
+        "near": near,
+        "near_robots": [list(range(m))] * n,
+        "apart": [[]] * n,
+        "limits": [inf] * m,
+        "recharges": [0.0] * m,
+        "earliest": [0.0] * n,
+        "deadlines": [inf] * n,
+        "ranks": [0] * n,
+    }
+    return Field(**{**plain, **features})
+
+
+def searched(given, steps=300, seed=0):
+    search = Search(given, seed)
+    for _ in search.run(steps):
+        pass
+    return search.best
+
+
+def places(count, seed):
+    random = Random(seed)
+    return [(random.uniform(0.0, 100.0), random.uniform(0.0, 100.0)) for _ in range(count)]
+
+
+def orders(tours, robots):
+    return [list(tours.of(robot)) for robot in range(robots)]
+
+
+def length(home, way):
+    return sum(map(dist, (home, *way), (*way, home)))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_longest_of_two_tours_is_as_short_as_any(seed):
+    homes, stops = places(2, seed), places(6, seed + 100)
+    least = inf
+    for who in product((0, 1), repeat=len(stops)):
+        mine = [[stop for stop, robot in zip(stops, who, strict=True) if robot == each] for each in (0, 1)]
+        shortest = [
+            min(length(*pair) for pair in product([home], permutations(own)))
+            for home, own in zip(homes, mine, strict=True)
+        ]
+        least = min(least, max(shortest))
+    assert max(searched(field(homes, stops)).seconds) == pytest.approx(least)
+
+
+def test_each_stop_is_in_one_tour_whose_seconds_are_those_of_its_legs():
+    homes, stops = places(4, 1), places(40, 2)
+    tours = searched(field(homes, stops))
+    found = orders(tours, 4)
+    assert sorted(stop for order in found for stop in order) == list(range(40))
+    assert tours.seconds == pytest.approx(
+        [length(home, [stops[i] for i in order]) for home, order in zip(homes, found, strict=True)]
+    )
+
+
+def test_the_same_seed_gives_the_same_tours():
+    given = field(places(3, 3), places(20, 4))
+    assert orders(searched(given, seed=7), 3) == orders(searched(given, seed=7), 3)
+
+
+def test_priority_does_not_rise_along_a_tour():
+    ranks = [i % 3 for i in range(20)]
+    tours = searched(field(places(3, 5), places(20, 6), ranks=ranks))
+    for order in orders(tours, 3):
+        assert [ranks[i] for i in order] == sorted((ranks[i] for i in order), reverse=True)
+
+
+def test_stops_that_are_to_be_apart_have_different_robots():
+    apart = [[1, 2], [0, 2], [0, 1], *([[]] * 7)]
+    tours = searched(field(places(3, 7), places(10, 8), apart=apart))
+    assert len({tours.robot[i] for i in range(3)}) == 3
+
+
+def test_a_robot_recharges_at_home_where_its_charge_does_not_suffice():
+    given = field([(0.0, 0.0)], [(10.0, 0.0), (0.0, 10.0)], limits=[25.0], recharges=[100.0])
+    assert searched(given).seconds == pytest.approx([20.0 + 100.0 + 20.0])
+
+
+def test_a_stop_waits_for_its_time_and_one_with_a_deadline_comes_first():
+    stops = [(10.0, 0.0), (20.0, 0.0)]
+    tours = searched(field([(0.0, 0.0)], stops, earliest=[50.0, 0.0], deadlines=[inf, 30.0]))
+    assert orders(tours, 1) == [[1, 0]]
+    assert tours.begins[:2] == [50.0, 20.0]
