@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import warnings
 from contextlib import suppress
 from itertools import product
@@ -12,7 +14,7 @@ from drawn_features import assert_same, drawings
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.drawings import geojson, gpx, gpx_writer, kml, kml_writer
+from mmrs_core.drawings import geojson, gpx, gpx_writer, kml, kml_writer, point_table
 from mmrs_core.drawings.drawing import Drawing, Geometry, MapFeature
 from mmrs_core.errors import UnreadableError
 
@@ -41,6 +43,42 @@ def test_a_round_trip_keeps_shapes_and_all_that_is_said_of_them(first, second, d
         write, read = WRITERS[format]
         again = read(write(again, title), f"farm.{format}")
         assert_same(drawing, again)
+
+
+CELLS = st.sampled_from(
+    (
+        "47.1",
+        "8,2",
+        "42°21'03\"N",
+        "N 42 21.05",
+        "-",
+        "'",
+        '"',
+        "nan",
+        "9" * 400,
+        "",
+        " ",
+        "lat",
+        "x;y",
+        "\n",
+        "\0",
+    )
+)
+
+
+@given(rows=st.lists(st.lists(CELLS, min_size=1, max_size=6), max_size=8), mark=st.sampled_from(",;\t"))
+def test_every_row_of_a_table_is_a_feature_or_left_out_or_the_table_is_refused(rows, mark):
+    text = "\n".join((mark.join(("name", "lat", "lon", "note")), *(mark.join(row) for row in rows)))
+    with suppress(UnreadableError):
+        drawing = point_table.read(text.encode(), "a.csv")
+        written = sum(any(map(str.strip, row)) for row in csv.reader(io.StringIO(text), delimiter=mark)) - 1
+        assert len(drawing.features) + len(drawing.left_out) == written
+
+
+@given(data=st.binary(max_size=60), header=st.sampled_from((b"lat,lon\n", b"area;y;x\n", b"\xff\xfe", b"")))
+def test_of_any_bytes_a_table_comes_or_a_clear_error(data, header):
+    with suppress(UnreadableError):
+        point_table.read(header + data, "a.csv")
 
 
 @pytest.mark.parametrize("format", WRITERS)

@@ -1,6 +1,10 @@
 import json
+import re
+from contextlib import suppress
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from mmrs_core.drawings.drawing import Geometry, HeightReference, Role
 from mmrs_core.errors import UnreadableError
@@ -184,3 +188,60 @@ def test_lists_of_fences_and_rally_points_are_shapes():
 def test_what_is_no_list_is_refused_with_its_line(data, message):
     with pytest.raises(UnreadableError, match=message):
         read_list(data, "a.waypoints")
+
+
+VALUES = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=4),
+    lambda inner: st.lists(inner, max_size=8) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
+    max_leaves=8,
+)
+KEYS = ("command", "frame", "params", "type", "complexItemType", "polygon", "polyline", "CameraCalc")
+
+
+@settings(deadline=None)
+@given(data=st.data())
+def test_of_any_plan_every_item_is_in_the_account_or_it_is_refused(data):
+    items = json.loads(PLAN)["mission"]["items"]
+    for each in data.draw(st.lists(st.sampled_from(items), max_size=4)):
+        each[data.draw(st.sampled_from(KEYS))] = data.draw(VALUES)
+    more = {data.draw(st.sampled_from(("geoFence", "rallyPoints"))): data.draw(VALUES)}
+    with suppress(UnreadableError):
+        drawing = read_plan(plan(*items, **data.draw(st.sampled_from(({}, more)))), "a.plan")
+        assert drawing.features or drawing.left_out
+
+
+@settings(deadline=None)
+@given(
+    rows=st.lists(
+        st.tuples(
+            st.sampled_from((16, 22, 19, 31, 177, 201, 5002, 5003, 5100, -1)),
+            st.sampled_from((0, 3, 10, 99)),
+            st.floats() | st.integers(-200, 200),
+            st.floats(-1, 1),
+        ),
+        max_size=8,
+    )
+)
+def test_of_any_list_every_row_is_in_the_account_or_it_is_refused(rows):
+    data = listed(
+        HOME,
+        *(f"{at} 0 {row[1]} {row[0]} 3 0 0 0 {row[2]} {row[3]} 9 1" for at, row in enumerate(rows, 1)),
+    )
+    with suppress(UnreadableError):
+        drawing = read_list(data, "a.waypoints")
+        lost = [re.findall(r"^items? (\d+)(?: to (\d+))?", each.what) for each in drawing.left_out]
+        count = sum(int(last or first) - int(first) + 1 for found in lost for first, last in found)
+        shown = sum(len(each.rings[0]) for each in drawing.features) - 1
+        whole = sum(each.lost is not None for each in drawing.left_out)
+        assert shown + count + 3 * whole >= len(rows)
+
+
+@settings(deadline=None)
+@given(
+    data=st.binary(max_size=80),
+    begin=st.sampled_from((b"QGC WPL 110\n", b'{"fileType": "Plan", "version": 1, ', b"")),
+)
+def test_of_any_bytes_a_drawing_comes_or_a_clear_error(data, begin):
+    for read in (read_list, read_plan):
+        with suppress(UnreadableError):
+            read(begin + data, "a")

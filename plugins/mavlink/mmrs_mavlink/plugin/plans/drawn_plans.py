@@ -160,13 +160,13 @@ class _PlanReader:
         for number, item in enumerate(self._list(mission, "items"), start=1):
             if not isinstance(item, JsonObject):
                 self.sheet.refuse(f"item {number} is not an object", mission.line)
-            kind = item.get("complexItemType")
+            kind = str(item.get("complexItemType") or "")
             if item.get("type") == "SimpleItem":
                 path.add(self._simple(item, number))
                 continue
             path.end()
             if kind in COMPLEX:
-                geometry, complex_role, key = COMPLEX[str(kind)]
+                geometry, complex_role, key = COMPLEX[kind]
                 properties = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
                 properties |= _attributes(properties)
                 ring, what = self._list(item, key), f"{complex_role.value} {number}"
