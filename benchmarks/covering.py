@@ -3,7 +3,7 @@
 Strokes of width w over an area A are A/w metres long at least, and actions that cover w by l metres
 come A/(w·l) times at least, both only if nothing is ever covered twice and no hop is needed.
 
-    python benchmarks/coverage.py --seed 1 > benchmarks/results/coverage.txt
+    python benchmarks/covering.py --seed 1 > benchmarks/results/covering.txt
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ class Layers:
         """
         self._visibility, self._active, self._rates = visibility, list(active), rates
         self._ends = ends
-        corners = [obstacles.grown[area].corners for area in self._active]
+        corners = [obstacles.corners_of(area) for area in self._active]
         self._places: Floats = np.concatenate([[ends[0][:2], ends[1][:2]], *corners])
         self._low, self._high = obstacles.low[self._active], obstacles.high[self._active]
         self._heights = self._levels(band)

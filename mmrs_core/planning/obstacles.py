@@ -15,9 +15,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
-from shapely.geometry.polygon import orient
 
-from mmrs_core.geometry.clearance import EPSILON, grow
+from mmrs_core.geometry.clearance import EPSILON, grow_all
 from mmrs_core.scene import Area
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -26,30 +25,53 @@ Flags: TypeAlias = NDArray[np.bool_]
 HEIGHT_MARGIN = 1e-9
 """Metres of rounding: so much within a band of heights, or a distance, still counts as at its edge."""
 
+_SIDES, _PARTS = 4.0, 256
+"""Pieces of long lines are so many times as long as areas are wide, but no more than so many."""
+
 
 @dataclass(frozen=True, slots=True)
-class Grown:
-    """An area grown by a robot's clearance.
+class Outlines:
+    """The rings of many shapes, each shape to the left, as places one after the other.
 
     Attributes:
-        area: as drawn.
-        clearance: metres to keep, safety distance included.
-        low, high: heights strictly between which it blocks.
-        corners: (n, 2) corners that routes may turn at, those of inner courts included.
-        before, after: (n, 2) each corner's neighbours along its ring.
+        places: (n, 2) corners, no ring's first one repeated at its end.
+        before, after: (n,) which place is the neighbour along the ring.
+        shape: (n,) which shape the ring is of; ascends.
     """
 
-    area: Area
-    clearance: float
-    low: float
-    high: float
-    corners: Floats
-    before: Floats
-    after: Floats
+    places: Floats
+    before: NDArray[np.intp]
+    after: NDArray[np.intp]
+    shape: NDArray[np.intp]
+
+
+def outlines_of(shapes: NDArray[np.object_]) -> Outlines:
+    """Return the rings of polygons, outer and inner."""
+    rings, shape = shapely.get_rings(shapes, return_index=True)
+    inner = np.concatenate([[False], shape[1:] == shape[:-1]]) if len(shape) else np.empty(0, np.bool_)
+    turned = shapely.is_ccw(rings) == inner
+    rings[turned] = shapely.reverse(rings[turned])
+    places, ring = shapely.get_coordinates(rings, return_index=True)
+    closing = np.concatenate([ring[1:] != ring[:-1], [True]]) if len(ring) else np.empty(0, np.bool_)
+    places, ring = places[~closing], ring[~closing]
+    here = np.arange(len(ring))
+    first = np.flatnonzero(np.diff(ring, prepend=-1))
+    last = np.append(first[1:], len(ring))[: len(first)] - 1
+    before, after = here - 1, here + 1
+    before[first], after[last] = last, first
+    return Outlines(places, before, after, shape[ring])
 
 
 class Obstacles:
-    """All grown areas of one robot, with an index by place."""
+    """All areas that one robot keeps away from, grown by its clearance, with an index by place.
+
+    Attributes:
+        areas: as drawn.
+        clearance: metres to keep from each, safety distance included.
+        low, high: heights strictly between which each blocks.
+        larger, smaller: shapes that lend their corners to routes, and that block.
+        drawn: shapes as drawn.
+    """
 
     def __init__(self, areas: Sequence[Area], clearance: float) -> None:
         """Grow the areas.
@@ -58,18 +80,40 @@ class Obstacles:
             areas: to keep away from.
             clearance: of the robot, metres; each area's safety distance comes on top.
         """
-        self.grown = tuple(_grown(area, area.safety_distance + clearance) for area in areas)
-        self.low = np.array([each.low for each in self.grown])
-        self.high = np.array([each.high for each in self.grown])
-        self._clearance = np.array([each.clearance for each in self.grown])
-        self._drawn = np.array([Polygon(each.area.shell) for each in self.grown], dtype=np.object_)
-        smaller = [grow(each.area.shell, each.clearance, margin=EPSILON / 2) for each in self.grown]
-        self._blocked = np.array(smaller, dtype=np.object_)
-        shapely.prepare(self._blocked)
-        self._tree = shapely.STRtree(self._blocked)
+        self.areas = tuple(areas)
+        self.clearance = np.array([area.safety_distance + clearance for area in areas], dtype=np.float64)
+        self.low = np.array([area.low for area in areas], dtype=np.float64) - self.clearance
+        self.high = np.array([area.high for area in areas], dtype=np.float64) + self.clearance
+        shells, distances = [area.shell for area in areas], self.clearance.tolist()
+        self.larger = grow_all(shells, distances)
+        self.smaller = grow_all(shells, distances, margin=EPSILON / 2)
+        self.drawn = np.array([Polygon(shell) for shell in shells], dtype=np.object_)
+        shapely.prepare(self.smaller)
+        self._corners: list[Floats] | None = None
+        sides = np.diff(shapely.bounds(self.smaller).reshape(-1, 2, 2), axis=1)
+        self._piece = _SIDES * float(sides.mean()) if len(areas) else 1.0
+        self._tree = shapely.STRtree(self.smaller)
 
     def __len__(self) -> int:
-        return len(self.grown)
+        return len(self.areas)
+
+    def corners(self) -> tuple[Floats, Floats, Floats, NDArray[np.intp]]:
+        """Return where routes may turn: corners that stick out, the ones before and after, whose they are.
+
+        With the shape to the left, its rings turn left there.
+        """
+        rings = outlines_of(self.larger)
+        before, after = rings.places[rings.before], rings.places[rings.after]
+        come, go = rings.places - before, after - rings.places
+        out = come[:, 0] * go[:, 1] - come[:, 1] * go[:, 0] > 0.0
+        return rings.places[out], before[out], after[out], rings.shape[out]
+
+    def corners_of(self, area: int) -> Floats:
+        """Return (n, 2): where routes may turn around an area."""
+        if self._corners is None:
+            corners, _, _, of = self.corners()
+            self._corners = np.split(corners, np.searchsorted(of, np.arange(1, len(self))))
+        return self._corners[area]
 
     def blocking(self, legs: Floats, *, spare: float = EPSILON / 2) -> Flags:
         """Return (n, areas): which areas each of n straight legs (n, 2, 3) is too near to.
@@ -92,7 +136,7 @@ class Obstacles:
         parts = np.stack([start + first[:, None] * offset, start + last[:, None] * offset], axis=1)[:, :, :2]
         shorter = (first > 0.0) | (last < 1.0)
         hit = np.ones(len(leg), dtype=np.bool_)
-        hit[shorter] = shapely.intersects(self._blocked[area[shorter]], shapely.linestrings(parts[shorter]))
+        hit[shorter] = shapely.intersects(self.smaller[area[shorter]], shapely.linestrings(parts[shorter]))
         hit[hit] = self._too_near(parts[hit], area[hit], spare)
         found[leg[hit], area[hit]] = True
         return found
@@ -117,16 +161,28 @@ class Obstacles:
         return found
 
     def _meetings(self, lines: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return pairs (line, area) that meet in the plane."""
+        """Return pairs (line, area) that meet in the plane.
+
+        The tree knows boxes only, which are large about long lines: these are looked up in pieces.
+        """
         if not len(self) or not len(lines):
             nothing = np.empty(0, dtype=np.intp)
             return nothing, nothing
-        pairs = self._tree.query(shapely.linestrings(lines), predicate="intersects")
-        return pairs[0], pairs[1]
+        parts = np.ceil(np.abs(lines[:, 1] - lines[:, 0]).max(axis=1) / self._piece)
+        parts = np.clip(parts, 1, _PARTS).astype(np.intp)
+        line = np.repeat(np.arange(len(lines)), parts)
+        share = (np.arange(len(line)) - (np.cumsum(parts) - parts)[line])[:, None] / parts[line, None]
+        start, offset = lines[line, 0], lines[line, 1] - lines[line, 0]
+        pieces = np.stack(
+            [start + share * offset, start + (share + 1.0 / parts[line, None]) * offset], axis=1
+        )
+        piece, area = self._tree.query(shapely.linestrings(pieces), predicate="intersects")
+        met = np.unique(line[piece] * len(self) + area)
+        return met // len(self), met % len(self)
 
     def _in_rim(self, lines: Floats, area: NDArray[np.intp]) -> Flags:
         """Return, for pairs that meet, whether the line has an end within the grown shape."""
-        shapes = self._blocked[area]
+        shapes = self.smaller[area]
         rim: Flags = shapely.intersects_xy(shapes, lines[:, 0, 0], lines[:, 0, 1])
         rim |= shapely.intersects_xy(shapes, lines[:, 1, 0], lines[:, 1, 1])
         return rim
@@ -137,7 +193,7 @@ class Obstacles:
         A line may not come nearer than the clearance and a spare distance; one that has an end nearer
         than that, no nearer than its end.
         """
-        drawn, clearance = self._drawn[area], self._clearance[area]
+        drawn, clearance = self.drawn[area], self.clearance[area]
         at_ends = np.minimum(
             shapely.distance(shapely.points(lines[:, 0]), drawn),
             shapely.distance(shapely.points(lines[:, 1]), drawn),
@@ -160,27 +216,4 @@ class Obstacles:
 
     def names(self, areas: Flags) -> str:
         """Return the names of flagged areas, quoted, in alphabetical order."""
-        return ", ".join(sorted(f"'{self.grown[i].area.name}'" for i in np.flatnonzero(areas).tolist()))
-
-
-def _grown(area: Area, clearance: float) -> Grown:
-    larger = grow(area.shell, clearance, margin=EPSILON)
-    corners, before, after = _corners(larger)
-    return Grown(area, clearance, area.low - clearance, area.high + clearance, corners, before, after)
-
-
-def _corners(shape: Polygon) -> tuple[Floats, Floats, Floats]:
-    """Return the corners at which a short offset around a shape may turn, and their neighbours.
-
-    These are the ones that stick out; with the shape to the left, its rings turn left there.
-    """
-    turned = orient(shape)
-    found = []
-    for ring in (turned.exterior, *turned.interiors):
-        at = shapely.get_coordinates(ring)[:-1]
-        before, after = np.roll(at, 1, axis=0), np.roll(at, -1, axis=0)
-        come, go = at - before, after - at
-        out = come[:, 0] * go[:, 1] - come[:, 1] * go[:, 0] > 0.0
-        found.append((at[out], before[out], after[out]))
-    corners, befores, afters = zip(*found, strict=True)
-    return np.concatenate(corners), np.concatenate(befores), np.concatenate(afters)
+        return ", ".join(sorted(f"'{self.areas[i].name}'" for i in np.flatnonzero(areas).tolist()))

@@ -14,7 +14,7 @@ from mmrs_core.geometry.segments import legs_of
 from mmrs_core.planning.curves import with_fewer_corners
 from mmrs_core.planning.layers import Layers
 from mmrs_core.planning.obstacles import Flags, Obstacles
-from mmrs_core.planning.visibility import Visibility, shortest_path
+from mmrs_core.planning.visibility import Visibility
 from mmrs_core.scene import Area, Position
 from mmrs_core.scene.timing import Rates
 
@@ -119,7 +119,7 @@ class Space:
                 continue
             longest = (quickest - upright) * self.rates.cruise
             blocks = self._obstacles.blocks_at(height)
-            flat = shortest_path(self._obstacles, self._visibility, start[:2], goal[:2], blocks, longest)
+            flat = self._visibility.shortest_path(start[:2], goal[:2], blocks, longest)
             if flat is not None:
                 path = [start, *((*place, height) for place in flat), goal]
                 path = [here for i, here in enumerate(path) if i == 0 or here != path[i - 1]]
@@ -170,7 +170,10 @@ class Space:
     def _cut_short(self, path: Sequence[Position]) -> tuple[Position, ...]:
         """Return the quickest path through some of the positions, in order, by clear straight legs."""
         count = len(path)
-        pairs = [(i, j) for i in range(count) for j in range(i + 2, count)]
+        level = [path[i][2] == path[i + 1][2] for i in range(count - 1)]
+        pairs = [
+            (i, j) for i in range(count) for j in range(i + 2, count) if j == i + 2 or not all(level[i:j])
+        ]
         if not pairs:
             return tuple(path)
         legs = np.array([[path[i], path[j]] for i, j in pairs])

@@ -1,80 +1,86 @@
-"""Shortest paths in the plane, at one altitude, by lines of sight to corners of grown areas."""
+"""What lies between places in the plane, and shortest paths around it; remembered from path to path."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from heapq import heappop, heappush
-from math import hypot, inf
+from math import inf
 from typing import TypeAlias
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
-from mmrs_core.planning.obstacles import Flags, Floats, Obstacles
+from mmrs_core.geometry.clearance import EPSILON
+from mmrs_core.planning.compilation import column
+from mmrs_core.planning.obstacles import Flags, Floats, Obstacles, outlines_of
+from mmrs_core.planning.sight import FULL, NONE, START, UNKNOWN, Columns, Memory, search
 
 Place: TypeAlias = tuple[float, float]
 
-START, GOAL = (-1, 0), (-1, 1)
-Corner: TypeAlias = tuple[int, int]
-"""(area, index of the corner); START and GOAL stand for the ends of a route."""
-
-
-@dataclass(frozen=True, slots=True)
-class Tangents:
-    """Lines from a place that touch an area's corners and do not run into the area there.
-
-    Attributes:
-        corners: (k,) indices of the corners.
-        lengths: (k,) metres.
-        crossed: (k, areas) what lies between.
-    """
-
-    corners: NDArray[np.intp]
-    lengths: Floats
-    crossed: Flags
+_SETS = 32
+"""Sets of areas at most for which is kept what was seen."""
 
 
 class Visibility:
-    """Answers which grown areas lie across straight lines in the plane, heights aside."""
+    """Finds shortest paths among grown areas, of which those count that block at a height."""
 
     def __init__(self, obstacles: Obstacles) -> None:
         self._obstacles = obstacles
-        self._tangents: dict[tuple[Place, int], Tangents] = {}
+        self._columns: Columns | None = None
+        self._memories: dict[bytes, Memory] = {}
         self._rows: dict[tuple[Place, int], Flags] = {}
         self._pairs: dict[tuple[Place, Place], Flags] = {}
 
-    def tangents(self, place: Place, corner: Corner, area: int) -> Tangents:
-        """Return the tangents from a place to an area.
+    def shortest_path(
+        self, start: Place, goal: Place, blocks: Flags, longest: float = inf
+    ) -> list[Place] | None:
+        """Return the shortest path around the areas that block; None if there is none within `longest`.
 
         Args:
-            place: where they begin.
-            corner: which corner that is; where it is one, they must touch its own area likewise.
-            area: whose corners they end at.
+            start: where the path begins.
+            goal: where it ends.
+            blocks: (areas,) which areas block.
+            longest: metres beyond which a path is of no use.
         """
-        known = self._tangents.get((place, area))
-        if known is None:
-            known = self._tangents[place, area] = self._find_tangents(np.array(place), corner, area)
-        return known
+        if self._columns is None:
+            self._columns = columns_of(self._obstacles)
+        columns, nodes = self._columns, 2 * len(self._columns.x)
+        memory = self._memory(blocks, nodes)
+        best, came = column(np.full(nodes + 1, inf)), column(np.full(nodes + 1, START))
+        metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, best, came)
+        while metres == FULL:
+            memory = self._memories[blocks.tobytes()] = _enlarged(memory)
+            best, came = column(np.full(nodes + 1, inf)), column(np.full(nodes + 1, START))
+            metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, best, came)
+        if metres == NONE:
+            return None
+        path, node = [goal], int(came[nodes])
+        while node != START:
+            path.append((float(columns.x[node // 2]), float(columns.y[node // 2])))
+            node = int(came[node])
+        return [start, *reversed(path)]
 
-    def _find_tangents(self, place: Floats, corner: Corner, area: int) -> Tangents:
-        goals = self._obstacles.grown[area]
-        offset = goals.corners - place
-        lengths = np.hypot(offset[:, 0], offset[:, 1])
-        useful = _same_side(offset, goals.before - goals.corners, goals.after - goals.corners)
-        if corner[0] >= 0:
-            own = self._obstacles.grown[corner[0]]
-            here = own.corners[corner[1]]
-            useful &= _same_side(offset, own.before[corner[1]] - here, own.after[corner[1]] - here)
-        picks = np.flatnonzero(useful & (lengths > 1e-9))
-        lines = np.stack([np.broadcast_to(place, (len(picks), 2)), goals.corners[picks]], axis=1)
-        return Tangents(picks, lengths[picks], self._obstacles.crossed(lines))
+    def _memory(self, blocks: Flags, nodes: int) -> Memory:
+        key = blocks.tobytes()
+        memory = self._memories.get(key)
+        if memory is None:
+            if len(self._memories) == _SETS:
+                del self._memories[next(iter(self._memories))]
+            memory = self._memories[key] = Memory(
+                column(blocks),
+                column(np.zeros(nodes, np.int64)),
+                column(np.full(nodes, UNKNOWN)),
+                column(np.zeros(nodes, np.int64)),
+                column(np.zeros(nodes)),
+                column(np.zeros(1, np.int64)),
+                column(np.zeros(len(blocks) + 1, np.int64)),
+            )
+        return memory
 
     def to_corners(self, place: Place, area: int) -> Flags:
         """Return (corners of the area, areas): what lies between a place and each corner."""
         row = self._rows.get((place, area))
         if row is None:
-            corners = self._obstacles.grown[area].corners
+            corners = self._obstacles.corners_of(area)
             lines = np.stack([np.broadcast_to(np.array(place), corners.shape), corners], axis=1)
             row = self._rows[place, area] = self._obstacles.crossed(lines)
         return row
@@ -87,101 +93,51 @@ class Visibility:
         return flags
 
 
-def _same_side(offset: Floats, before: Floats, after: Floats) -> Flags:
-    """Return whether both neighbours of a corner lie on one side of the line through it."""
-    left = offset[..., 0] * before[..., 1] - offset[..., 1] * before[..., 0]
-    right = offset[..., 0] * after[..., 1] - offset[..., 1] * after[..., 0]
-    same: Flags = left * right >= -1e-9
-    return same
+def columns_of(obstacles: Obstacles) -> Columns:
+    """Return grown areas as columns, and a grid of about as many cells over them."""
+    count = len(obstacles)
+    corners, before, after, of = obstacles.corners()
+    edges, walls = outlines_of(obstacles.smaller), outlines_of(obstacles.drawn)
+    bounds = shapely.bounds(obstacles.larger).reshape(-1, 4)
+    low = bounds[:, :2].min(axis=0, initial=inf) if count else np.zeros(2)
+    extent = bounds[:, 2:].max(axis=0, initial=-inf) - low if count else np.ones(2)
+    each = (bounds[:, 2:] - bounds[:, :2]).mean() if count else 1.0
+    cell = max(float(np.sqrt(extent.prod() / max(1, count))), float(each))
+    columns, rows = (int(cells) for cells in extent // cell + 1)
+    cells_from, in_cells = _in_cells((bounds.reshape(-1, 2, 2) - low) // cell, columns, rows)
+    parts: list[Floats | NDArray[np.intp]] = [*corners.T, *(before - corners).T, *(after - corners).T]
+    parts.append(_slices(of, count))
+    for rings in (edges, walls):
+        parts += [*rings.places.T, *rings.places[rings.after].T, _slices(rings.shape, count)]
+    parts += [obstacles.clearance, *bounds.T, cells_from, in_cells]
+    return Columns._make([*map(column, parts), *low.tolist(), cell, columns, rows])
 
 
-def shortest_path(
-    obstacles: Obstacles,
-    visibility: Visibility,
-    start: Place,
-    goal: Place,
-    blocks: Flags,
-    longest: float = inf,
-) -> list[Place] | None:
-    """Return the shortest path around the areas that block; None if there is none within `longest`.
+def _slices(of: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """Return where each of `count` owners' items begin, and where the last one's end."""
+    return np.searchsorted(of, np.arange(count + 1))
 
-    Only areas that cross the best path found so far count, until a path among these crosses no other:
-    as leaving areas out can only make paths shorter, that one is the shortest of all.
+
+def _in_cells(spans: Floats, columns: int, rows: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return where each cell's areas begin, and the areas in all cells.
 
     Args:
-        obstacles: of the robot.
-        visibility: over the same obstacles.
-        start: where the path begins.
-        goal: where it ends.
-        blocks: (areas,) which areas block at the height.
-        longest: metres beyond which a path is of no use.
+        spans: (areas, 2, 2) first and last (column, row) of each area.
+        columns: of the grid.
+        rows: of the grid.
     """
-    active = visibility.between(start, goal) & blocks
-    while True:
-        path = _around(obstacles, visibility, start, goal, np.flatnonzero(active), longest)
-        if path is None:
-            return None
-        legs = np.array([path[:-1], path[1:]]).swapaxes(0, 1)
-        fresh = obstacles.crossed(legs).any(axis=0) & blocks & ~active
-        if not fresh.any():
-            return path
-        active = active | fresh
+    first, last = spans[:, 0].astype(np.intp), spans[:, 1].astype(np.intp)
+    wide, high = (last - first + 1).T
+    area = np.repeat(np.arange(len(spans)), wide * high)
+    index = np.arange(len(area)) - np.repeat(np.cumsum(wide * high) - wide * high, wide * high)
+    cell = (first[area, 1] + index // wide[area]) * columns + first[area, 0] + index % wide[area]
+    order = np.argsort(cell, kind="stable")
+    return _slices(cell[order], columns * rows), area[order]
 
 
-def _around(
-    obstacles: Obstacles,
-    visibility: Visibility,
-    start: Place,
-    goal: Place,
-    active: NDArray[np.intp],
-    longest: float,
-) -> list[Place] | None:
-    """Return the shortest path around the active areas by A* over tangents."""
-    best: dict[Corner, float] = {START: 0.0}
-    came: dict[Corner, Corner] = {}
-    places: dict[Corner, Place] = {START: start, GOAL: goal}
-    queue = [(hypot(goal[0] - start[0], goal[1] - start[1]), START)]
-    done: set[Corner] = set()
-    while queue:
-        bound, here = heappop(queue)
-        if bound > longest:
-            return None
-        if here == GOAL:
-            return _back(came, places)
-        if here in done:
-            continue
-        done.add(here)
-        for there, place, length in _onwards(obstacles, visibility, here, places[here], goal, active):
-            reached = best[here] + length
-            if reached < best.get(there, inf) - 1e-12:
-                best[there], came[there], places[there] = reached, here, place
-                heappush(queue, (reached + hypot(goal[0] - place[0], goal[1] - place[1]), there))
-    return None
-
-
-def _onwards(
-    obstacles: Obstacles,
-    visibility: Visibility,
-    here: Corner,
-    place: Place,
-    goal: Place,
-    active: NDArray[np.intp],
-) -> Iterator[tuple[Corner, Place, float]]:
-    """Yield the corners that can be reached next: (corner, its place, metres)."""
-    if not visibility.between(place, goal)[active].any():
-        yield GOAL, goal, hypot(goal[0] - place[0], goal[1] - place[1])
-    for area in active.tolist():
-        found = visibility.tangents(place, here, area)
-        free = np.flatnonzero(~found.crossed[:, active].any(axis=1))
-        corners = obstacles.grown[area].corners[found.corners[free]].tolist()
-        for corner, (east, north), length in zip(
-            found.corners[free].tolist(), corners, found.lengths[free].tolist(), strict=True
-        ):
-            yield (area, corner), (east, north), length
-
-
-def _back(came: dict[Corner, Corner], places: dict[Corner, Place]) -> list[Place]:
-    corners = [GOAL]
-    while corners[-1] in came:
-        corners.append(came[corners[-1]])
-    return [places[corner] for corner in reversed(corners)]
+def _enlarged(memory: Memory) -> Memory:
+    """Return the same memory with room for twice as much."""
+    node, metres = np.asarray(memory.node), np.asarray(memory.metres)
+    return memory._replace(
+        node=column(np.concatenate([node, node])), metres=column(np.concatenate([metres, metres]))
+    )

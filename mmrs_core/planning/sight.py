@@ -1,0 +1,408 @@
+"""Shortest paths in the plane around grown areas, by lines of sight that are looked for where needed only.
+
+A shortest path turns at corners that stick out, and touches the area there: with the area to its left
+it can only go on between the directions of the two sides (Rohnert 1986: tangents are enough). So a node
+is a corner and the side on which the area is, and from it only a narrow wedge is looked into: cell by
+cell of a grid, outwards, until all of it is blocked (Hechenberger et al. 2020 scan rays likewise). What
+was seen is kept for later paths. A* over these nodes is exact.
+
+These are loops over columns of numbers: compiled where numba is installed, and run as they are where not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import MutableSequence, Sequence
+from heapq import heappop, heappush
+from math import asin, atan2, inf, pi, sqrt
+from typing import NamedTuple
+
+from mmrs_core.planning.compilation import compiled
+
+LEFT, RIGHT = 0, 1
+"""Side on which a corner's area is; corner k with its area there is node 2 k + side."""
+
+START, UNKNOWN = -1, -1
+NONE, FULL = -1.0, -2.0
+"""What `search` returns instead of a length: there is no path; the memory has to be enlarged."""
+
+_DIRECTIONS, _BINS = 256, 8
+"""Bins of directions all around a place, and within a corner's wedge."""
+
+_TINY = 1e-9
+_MARGIN = 1e-3
+"""Metres by which a line must run into a grown area to be surely blocked by the smaller one."""
+
+
+class Columns(NamedTuple):
+    """Grown areas, by corner, by edge, by area and by cell of a grid.
+
+    Corners (x, y, offsets to the neighbours before and after) are those of the larger shapes, edges
+    (x1, y1) to (x2, y2) those of the smaller ones that block, walls those of the areas as drawn.
+    """
+
+    x: Sequence[float]
+    y: Sequence[float]
+    before_x: Sequence[float]
+    before_y: Sequence[float]
+    after_x: Sequence[float]
+    after_y: Sequence[float]
+    corners_from: Sequence[int]
+    x1: Sequence[float]
+    y1: Sequence[float]
+    x2: Sequence[float]
+    y2: Sequence[float]
+    edges_from: Sequence[int]
+    wall_x1: Sequence[float]
+    wall_y1: Sequence[float]
+    wall_x2: Sequence[float]
+    wall_y2: Sequence[float]
+    walls_from: Sequence[int]
+    clearance: Sequence[float]
+    west: Sequence[float]
+    south: Sequence[float]
+    east: Sequence[float]
+    north: Sequence[float]
+    cells_from: Sequence[int]
+    in_cells: Sequence[int]
+    origin_x: float
+    origin_y: float
+    cell: float
+    columns: int
+    rows: int
+
+
+class Memory(NamedTuple):
+    """What was seen from nodes among areas that block, and room for one search.
+
+    Attributes:
+        blocks: by area, whether it blocks.
+        seen_from, seen: by node, where what it sees begins, and how many nodes; UNKNOWN: not looked yet.
+        node, metres: what is seen: nodes, and how far away.
+        used: (1,) how many of these there are.
+        met: by area, the number of the look that met it last; the last item counts looks.
+    """
+
+    blocks: Sequence[bool]
+    seen_from: MutableSequence[int]
+    seen: MutableSequence[int]
+    node: MutableSequence[int]
+    metres: MutableSequence[float]
+    used: MutableSequence[int]
+    met: MutableSequence[int]
+
+
+@compiled
+def search(
+    c: Columns,
+    memory: Memory,
+    start_x: float,
+    start_y: float,
+    goal_x: float,
+    goal_y: float,
+    longest: float,
+    spare: float,
+    best: MutableSequence[float],
+    came: MutableSequence[int],
+) -> float:
+    """Return the metres of the shortest path; NONE or FULL where there is none.
+
+    Args:
+        c: the areas.
+        memory: of what was seen before.
+        start_x, start_y, goal_x, goal_y: ends of the path.
+        longest: metres beyond which a path is of no use.
+        spare: metres to keep on top of clearances.
+        best: (nodes + 1,) inf; will hold metres from the start, with the goal last.
+        came: (nodes + 1,) will hold the node before, START for the first.
+    """
+    goal = len(best) - 1
+    straight = sqrt((goal_x - start_x) ** 2 + (goal_y - start_y) ** 2)
+    if straight > longest:
+        return NONE
+    if _clear(c, memory, start_x, start_y, goal_x, goal_y, spare):
+        best[goal], came[goal] = straight, START
+        return straight
+    to_goal = {-2: 0.0}
+    for node, metres in _look(c, memory, goal_x, goal_y, -1, spare):
+        to_goal[node ^ 1] = metres
+    queue = [(0.0, -2)]
+    queue.pop()
+    for node, metres in _look(c, memory, start_x, start_y, -1, spare):
+        best[node], came[node] = metres, START
+        k = node // 2
+        heappush(queue, (metres + sqrt((goal_x - c.x[k]) ** 2 + (goal_y - c.y[k]) ** 2), node))
+    while len(queue):
+        bound, node = heappop(queue)
+        if bound > longest:
+            return NONE
+        if node == goal:
+            return best[goal]
+        k = node // 2
+        here = best[node]
+        if bound > here + sqrt((goal_x - c.x[k]) ** 2 + (goal_y - c.y[k]) ** 2) + _TINY:
+            continue
+        if node in to_goal and here + to_goal[node] < best[goal]:
+            best[goal], came[goal] = here + to_goal[node], node
+            heappush(queue, (best[goal], goal))
+        if memory.seen[node] == UNKNOWN:
+            found = _look(c, memory, c.x[k], c.y[k], node, spare)
+            used = memory.used[0]
+            if used + len(found) > len(memory.node):
+                return FULL
+            memory.seen_from[node], memory.seen[node] = used, len(found)
+            for other, metres in found:
+                memory.node[used], memory.metres[used] = other, metres
+                used += 1
+            memory.used[0] = used
+        first = memory.seen_from[node]
+        for i in range(first, first + memory.seen[node]):
+            other = memory.node[i]
+            reached = here + memory.metres[i]
+            if reached < best[other] - 1e-12:
+                j = other // 2
+                rest = reached + sqrt((goal_x - c.x[j]) ** 2 + (goal_y - c.y[j]) ** 2)
+                if rest <= longest:
+                    best[other], came[other] = reached, node
+                    heappush(queue, (rest, other))
+    return NONE
+
+
+@compiled
+def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: float) -> list[tuple[int, float]]:
+    """Return the nodes seen from a place, and their distances.
+
+    What is looked into is cut into bins of directions. An area that takes up a bin as a whole blocks it
+    from its furthest corner on; cells and areas all of whose bins are blocked before them are left out.
+
+    Args:
+        c: the areas.
+        memory: of which areas block.
+        x, y: the place.
+        node: which node that is; -1: none, all directions are looked into.
+        spare: metres to keep on top of clearances.
+    """
+    bins, base_x, base_y, width = _DIRECTIONS, 1.0, 0.0, 2.0 * pi / _DIRECTIONS
+    own = node // 2
+    if node >= 0:
+        base_x, base_y, to_x, to_y = -c.before_x[own], -c.before_y[own], c.after_x[own], c.after_y[own]
+        if node % 2 == RIGHT:
+            base_x, base_y = -base_x, -base_y
+            to_x, to_y = -to_x, -to_y
+        bins, width = _BINS, max(_angle(base_x, base_y, to_x, to_y) / _BINS, 1e-6)
+    blocked = [inf for _ in range(bins)]
+    memory.met[-1] += 1
+    look = memory.met[-1]
+    areas, seen = [0], [(0, 0.0)]
+    areas.pop()
+    seen.pop()
+    column, row = int((x - c.origin_x) // c.cell), int((y - c.origin_y) // c.cell)
+    ring = max(0, -column, column - c.columns + 1, -row, row - c.rows + 1)
+    last = max(column, c.columns - 1 - column, row, c.rows - 1 - row)
+    while ring <= last and max(blocked) > (ring - 1) * c.cell:
+        for i in range(max(0, column - ring), min(c.columns - 1, column + ring) + 1):
+            step = 1 if abs(i - column) == ring else max(1, 2 * ring)
+            for j in range(row - ring, row + ring + 1, step):
+                if j < 0 or j >= c.rows:
+                    continue
+                to_x, to_y = c.origin_x + (i + 0.5) * c.cell - x, c.origin_y + (j + 0.5) * c.cell - y
+                if _hidden(blocked, node < 0, base_x, base_y, width, to_x, to_y, 0.75 * c.cell):
+                    continue
+                cell = j * c.columns + i
+                for item in range(c.cells_from[cell], c.cells_from[cell + 1]):
+                    area = c.in_cells[item]
+                    if memory.met[area] == look or not memory.blocks[area]:
+                        continue
+                    memory.met[area] = look
+                    to_x = (c.west[area] + c.east[area]) / 2.0 - x
+                    to_y = (c.south[area] + c.north[area]) / 2.0 - y
+                    wide, high = c.east[area] - c.west[area], c.north[area] - c.south[area]
+                    radius = sqrt(wide * wide + high * high) / 2.0
+                    if not _hidden(blocked, node < 0, base_x, base_y, width, to_x, to_y, radius):
+                        areas.append(area)
+                        _meet(c, area, x, y, node, base_x, base_y, width, blocked, seen)
+        ring += 1
+    found = [(0, 0.0)]
+    found.pop()
+    for other, metres in seen:
+        k = other // 2
+        if _hidden(blocked, node < 0, base_x, base_y, width, c.x[k] - x, c.y[k] - y, _MARGIN):
+            continue
+        for area in areas:
+            if _crosses(c, area, x, y, c.x[k], c.y[k], spare):
+                break
+        else:
+            found.append((other, metres))
+    return found
+
+
+@compiled
+def _angle(x: float, y: float, to_x: float, to_y: float) -> float:
+    """Return the angle from one direction to another, radians to the left."""
+    return atan2(x * to_y - y * to_x, x * to_x + y * to_y)
+
+
+@compiled
+def _hidden(
+    blocked: Sequence[float],
+    around: bool,
+    base_x: float,
+    base_y: float,
+    width: float,
+    to_x: float,
+    to_y: float,
+    radius: float,
+) -> bool:
+    """Return whether a circle lies beyond what blocks all of its bins, or in none."""
+    metres = sqrt(to_x * to_x + to_y * to_y)
+    if metres <= radius:
+        return False
+    middle, spread = _angle(base_x, base_y, to_x, to_y), asin(radius / metres)
+    first, last = int((middle - spread) // width), int((middle + spread) // width)
+    bins = len(blocked)
+    if not around:
+        first, last = max(first, 0), min(last, bins - 1)
+    i = first
+    while i <= last and blocked[i % bins] <= metres - radius:
+        i += 1
+    return i > last
+
+
+@compiled
+def _meet(
+    c: Columns,
+    area: int,
+    x: float,
+    y: float,
+    node: int,
+    base_x: float,
+    base_y: float,
+    width: float,
+    blocked: MutableSequence[float],
+    seen: list[tuple[int, float]],
+) -> None:
+    """Add the nodes at which lines from a place touch an area; note which bins it blocks."""
+    own, side = node // 2, node % 2
+    low_x = low_y = high_x = high_y = furthest = 0.0
+    for k in range(c.corners_from[area], c.corners_from[area + 1]):
+        to_x, to_y = c.x[k] - x, c.y[k] - y
+        squared = to_x * to_x + to_y * to_y
+        furthest = max(furthest, squared)
+        if low_x * to_y - low_y * to_x <= 0.0:
+            low_x, low_y = to_x, to_y
+        if high_x * to_y - high_y * to_x >= 0.0:
+            high_x, high_y = to_x, to_y
+        one = to_x * c.before_y[k] - to_y * c.before_x[k]
+        two = to_x * c.after_y[k] - to_y * c.after_x[k]
+        if squared <= 1e-18 or (one * two < 0.0 and min(abs(one), abs(two)) > _TINY * sqrt(squared)):
+            continue
+        metres = sqrt(squared)
+        tiny = _TINY * metres
+        if node >= 0:
+            from_one = to_x * c.before_y[own] - to_y * c.before_x[own]
+            from_two = to_x * c.after_y[own] - to_y * c.after_x[own]
+            if base_x * to_x + base_y * to_y <= 0.0:
+                continue
+            if side == LEFT and min(from_one, from_two) < -tiny:
+                continue
+            if side == RIGHT and max(from_one, from_two) > tiny:
+                continue
+        if min(one, two) >= -tiny:
+            seen.append((2 * k + LEFT, metres))
+        if max(one, two) <= tiny:
+            seen.append((2 * k + RIGHT, metres))
+    if c.west[area] <= x <= c.east[area] and c.south[area] <= y <= c.north[area]:
+        return
+    furthest = sqrt(furthest)
+    low = _angle(base_x, base_y, low_x, low_y)
+    high = low + _angle(low_x, low_y, high_x, high_y)
+    low += _MARGIN / sqrt(low_x * low_x + low_y * low_y)
+    high -= _MARGIN / sqrt(high_x * high_x + high_y * high_y)
+    first, last = int(low // width) + 1, int(high // width) - 1
+    bins = len(blocked)
+    if node >= 0:
+        first, last = max(first, 0), min(last, bins - 1)
+    for i in range(first, last + 1):
+        blocked[i % bins] = min(blocked[i % bins], furthest)
+
+
+@compiled
+def _clear(c: Columns, memory: Memory, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
+    """Return whether no area that blocks lies across a line."""
+    for area in range(len(memory.blocks)):
+        if memory.blocks[area] and _crosses(c, area, x, y, to_x, to_y, spare):
+            return False
+    return True
+
+
+@compiled
+def _crosses(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
+    """Return whether a line meets an area's smaller shape.
+
+    Where it ends within that shape, only if the exact distance to the area as drawn is too small: growing
+    gives a little away.
+    """
+    if (
+        max(x, to_x) < c.west[area]
+        or min(x, to_x) > c.east[area]
+        or max(y, to_y) < c.south[area]
+        or min(y, to_y) > c.north[area]
+    ):
+        return False
+    along_x, along_y = to_x - x, to_y - y
+    east, north = (c.west[area] + c.east[area]) / 2.0 - x, (c.south[area] + c.north[area]) / 2.0 - y
+    reach = abs(along_y) * (c.east[area] - c.west[area]) + abs(along_x) * (c.north[area] - c.south[area])
+    if abs(along_x * north - along_y * east) > reach / 2.0 + _TINY:
+        return False
+    meets = begins = ends = False
+    first, last = c.edges_from[area], c.edges_from[area + 1]
+    squared = along_x * along_x + along_y * along_y
+    slack = 1e-6 / sqrt(squared) if squared > 1e-12 else 0.0
+    for i in range(first, last):
+        one = along_x * (c.y1[i] - y) - along_y * (c.x1[i] - x)
+        two = along_x * (c.y2[i] - y) - along_y * (c.x2[i] - x)
+        if (one > 0.0) != (two > 0.0):
+            share = one / (one - two)
+            at = (
+                (c.x1[i] + share * (c.x2[i] - c.x1[i]) - x) * along_x
+                + (c.y1[i] + share * (c.y2[i] - c.y1[i]) - y) * along_y
+            ) / squared
+            meets = meets or 0.0 <= at <= 1.0
+            begins = begins != (at < 0.0)
+            ends = ends != (at > 1.0)
+            if -slack <= at <= slack or 1.0 - slack <= at <= 1.0 + slack:
+                return _too_near(c, area, x, y, to_x, to_y, spare)
+    if begins or ends:
+        return _too_near(c, area, x, y, to_x, to_y, spare)
+    return meets
+
+
+@compiled
+def _too_near(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
+    """Return whether a line is nearer to an area as drawn than the clearance, and nearer than its ends."""
+    at_ends = nearest = inf
+    inside = False
+    for i in range(c.walls_from[area], c.walls_from[area + 1]):
+        x1, y1, x2, y2 = c.wall_x1[i], c.wall_y1[i], c.wall_x2[i], c.wall_y2[i]
+        at_ends = min(at_ends, _distance(x, y, x1, y1, x2, y2), _distance(to_x, to_y, x1, y1, x2, y2))
+        nearest = min(nearest, _distance(x1, y1, x, y, to_x, to_y))
+        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
+            inside = not inside
+        one = (to_x - x) * (y1 - y) - (to_y - y) * (x1 - x)
+        two = (to_x - x) * (y2 - y) - (to_y - y) * (x2 - x)
+        three = (x2 - x1) * (y - y1) - (y2 - y1) * (x - x1)
+        four = (x2 - x1) * (to_y - y1) - (y2 - y1) * (to_x - x1)
+        if (one > 0.0) != (two > 0.0) and (three > 0.0) != (four > 0.0):
+            return True
+    needed = min(max(at_ends, c.clearance[area]), c.clearance[area] + spare)
+    return inside or min(at_ends, nearest) < needed - _TINY
+
+
+@compiled
+def _distance(x: float, y: float, x1: float, y1: float, x2: float, y2: float) -> float:
+    """Return the distance of a place from a line between two others."""
+    along_x, along_y = x2 - x1, y2 - y1
+    squared = along_x * along_x + along_y * along_y
+    share = 0.0
+    if squared > 0.0:
+        share = min(1.0, max(0.0, ((x - x1) * along_x + (y - y1) * along_y) / squared))
+    return sqrt((x - x1 - share * along_x) ** 2 + (y - y1 - share * along_y) ** 2)
