@@ -98,6 +98,7 @@ class Travel:
         radius: metres within which the vehicle counts places of a run as passed, at most.
         margin: metres that the vehicle keeps from what it perceives itself, at least.
         turning_radius: of its narrowest curve, metres; 0: it turns on its own.
+        climb, descent: its type's largest vertical speeds, metres per second; None where unknown.
     """
 
     mode: str = "NORMAL"
@@ -105,6 +106,8 @@ class Travel:
     radius: float = 2.0
     margin: float = 0.0
     turning_radius: float = 0.0
+    climb: float | None = None
+    descent: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +136,6 @@ class Robot(words.Robot):
         endurance: seconds that a full battery lasts at the type's mean power; None where unknown.
         charge: what its batteries are to hold, and what its sorties take of that; None where unknown.
         fastest: its type's largest speed through air or water, metres per second; None where unknown.
-        descent: speed of its descent, metres per second; None where unknown.
         fence: polygons to stay out of; rally: emergency positions.
         tight: what operators must know of these.
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its path.
@@ -145,7 +147,6 @@ class Robot(words.Robot):
     endurance: float | None = field(default=None, kw_only=True)
     charge: Charge | None = field(default=None, kw_only=True)
     fastest: float | None = field(default=None, kw_only=True)
-    descent: float | None = field(default=None, kw_only=True)
     runs: tuple[Run, ...] = field(default=(), kw_only=True)
     fence: tuple[tuple[Place, ...], ...] = field(default=(), kw_only=True)
     rally: tuple[Place, ...] = field(default=(), kw_only=True)

@@ -171,6 +171,7 @@ class MavlinkPython(PythonDriver[VehicleContext]):
         turning_radius = 0.0 if kinematics is None else kinematics.turning_radius
         if turning_radius > 0.0:
             how.append(("turning_radius", turning_radius))
+        how += _vertical_speeds(context)
         yield "travel", Call("Travel", (robot.travel_mode,), tuple(how))
         yield "runs", tuple(_run(run, robot) for run in runs_of(context, turning_radius))
         yield (
@@ -251,14 +252,20 @@ def _escapes_alone(robot: RobotProgram, input: TargetInput) -> bool:
 
 
 def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
-    """Yield the robot type's endurance, largest speed and descent speed."""
+    """Yield the robot type's endurance and largest speed."""
     if context.type is None or (capability := capability_of(context.robot, context.type)) is None:
         return
     if capability.lifetime is not None:
         yield "endurance", capability.lifetime
     yield "fastest", metres(capability.speed[1])
-    if context.flies and capability.descent_rate is not None:
-        yield "descent", capability.descent_rate
+
+
+def _vertical_speeds(context: VehicleContext) -> Iterator[tuple[str, float]]:
+    """Yield the robot type's largest vertical speeds, as far as it states them."""
+    capability = capability_of(context.robot, context.type) if context.type is not None else None
+    if capability is not None and not context.profile.drives:
+        known = (("climb", capability.climb_rate), ("descent", capability.descent_rate))
+        yield from ((name, speed) for name, speed in known if speed is not None)
 
 
 def _run(run: MoveRun, robot: RobotProgram) -> Call:

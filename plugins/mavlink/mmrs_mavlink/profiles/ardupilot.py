@@ -122,6 +122,9 @@ _CENTIMETRES = 100.0
 _RADII = {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES}
 """Names of the radius in versions before and since 4.7, with their units in a metre."""
 
+_CLIMBS, _DESCENTS = {"WPNAV_SPEED_UP": _CENTIMETRES}, {"WPNAV_SPEED_DN": _CENTIMETRES}
+"""Obeyed at once, in GUIDED and AUTO (``AC_WPNav::update_wpnav``); an ArduSub obeys no other."""
+
 NOTHING = "no failsafe set"
 _LANDING = {1: "return, or land", 2: "land", 3: "SmartRTL, else RTL, else land"}
 
@@ -267,6 +270,8 @@ ARDUCOPTER = VehicleProfile(
     rehearsed_as="copter",
     flies=True,
     radii=_RADII,
+    climbs=_CLIMBS,
+    descents=_DESCENTS,
     corridor=8.0,
     down="LAND",
     rests={"LAND": modes.LAND, "SURFACE": modes.HOLD},
@@ -313,6 +318,8 @@ ARDUSUB = VehicleProfile(
     turns_as_places=True,
     timing=Timing(resend=2.0),
     radii=_RADII,
+    climbs=_CLIMBS,
+    descents=_DESCENTS,
     highest_item=-0.01,
     watches_jumps=False,
     down="SURFACE",

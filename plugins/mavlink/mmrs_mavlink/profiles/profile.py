@@ -157,6 +157,7 @@ class VehicleProfile:
         speed_repeats: number of targets in a row with which a new speed is sent: any may be lost.
         stops_early: whether it stops as soon as it is within the radius of its target.
         radii: parameters for the radius of waypoints, with their units in a metre.
+        climbs, descents: parameters for its vertical speeds, with their units in a metre per second.
         corridor: metres that it is beside its legs at most, in corners and gusts.
         highest_item: metres above home, of items of its missions; None: unlimited.
         watches_jumps: whether a position that leaps is a fault.
@@ -197,6 +198,8 @@ class VehicleProfile:
     speed_repeats: int = 3
     stops_early: bool = False
     radii: Mapping[str, float] = field(default_factory=dict)
+    climbs: Mapping[str, float] = field(default_factory=dict)
+    descents: Mapping[str, float] = field(default_factory=dict)
     corridor: float = 20.0
     highest_item: float | None = None
     watches_jumps: bool = True

@@ -251,6 +251,8 @@ def _on_px4(name: str, profile: VehicleProfile) -> VehicleProfile:
         breach=BREACH,
         safeguards=SAFEGUARDS,
         radii={"NAV_ACC_RAD": 1.0},
+        climbs={"MPC_Z_V_AUTO_UP": 1.0},
+        descents={"MPC_Z_V_AUTO_DN": 1.0},
     )
 
 

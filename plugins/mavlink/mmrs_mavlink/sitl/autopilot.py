@@ -221,15 +221,21 @@ class SimulatedAutopilot:
         keeps = mode == "auto" and self.settings.profile.autopilot.missions.keeps_speed
         passed = self.stores[MISSION][: self.item] if keeps else []
         speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
-        body.speed, body.climb, body.descent = (speeds or [self.usual_speed()])[-1], inf, inf
+        body.speed = (speeds or [self.usual_speed()])[-1]
+        body.climb, body.descent = self._value(self.settings.profile.climbs), self.usual_descent()
 
     def usual_speed(self) -> float:
         """Return the default speed, metres per second."""
         return self._value(SPEEDS)
 
+    def usual_descent(self) -> float:
+        """Return the default speed of its descents, metres per second."""
+        return self._value(self.settings.profile.descents)
+
     def _value(self, units: Mapping[str, float]) -> float:
-        """Return the first parameter that it has of these, in metres."""
-        return next(self.parameters[name] / unit for name, unit in units.items() if name in self.parameters)
+        """Return the first parameter that it has of these, in metres; inf where it has none."""
+        known = (self.parameters[name] / unit for name, unit in units.items() if name in self.parameters)
+        return next(known, inf)
 
     def face(self, place: Vector) -> None:
         """Turn to a place that is not right here."""

@@ -41,9 +41,11 @@ _COMMON: Mapping[str, float] = {
 }
 """Every device that a program may use is set up: two cameras, of which the second records videos."""
 
+_UPRIGHT = {"WPNAV_SPEED_UP": 250.0, "WPNAV_SPEED_DN": 150.0}
 _AVOIDING = {"AVOID_MARGIN": 2.0, "OA_TYPE": 0, "OA_MARGIN_MAX": 5.0}
 _COPTER: Mapping[str, float] = {
     **_AVOIDING,
+    **_UPRIGHT,
     "FS_OPTIONS": 16,
     "FS_EKF_ACTION": 1,
     "DISARM_DELAY": 10,
@@ -62,6 +64,7 @@ _ROVER: Mapping[str, float] = {
     "WP_RADIUS": 2.0,
 }
 _SUB: Mapping[str, float] = {
+    **_UPRIGHT,
     "FS_GCS_ENABLE": 1,
     "FS_GCS_TIMEOUT": 3.0,
     "FS_EKF_ACTION": 0,
@@ -77,6 +80,8 @@ _PX4: Mapping[str, float] = {
     "COM_OF_LOSS_T": 1.0,
     "COM_DISARM_PRFLT": 10.0,
     "NAV_ACC_RAD": 2.0,
+    "MPC_Z_V_AUTO_UP": 3.0,
+    "MPC_Z_V_AUTO_DN": 1.5,
     "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
     "MPC_XY_CRUISE": 5.0,

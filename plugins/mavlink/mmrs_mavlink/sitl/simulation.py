@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import dist, inf
+from math import dist
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -142,7 +142,7 @@ def _land(pilot: SimulatedAutopilot) -> None:
     if dist(place[:2], body.position[:2]) > NEAR:
         place = body.position
     body.target, body.onward, body.curved = (*place[:2], -1.0), None, False
-    body.descent = pacing.landing_rate if up < pacing.landing_height else inf
+    body.descent = pacing.landing_rate if up < pacing.landing_height else pilot.usual_descent()
     if up > GROUND:
         pilot.grounded_since = pilot.time
     else:

@@ -187,7 +187,7 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
 def _landing_seconds(robot: Robot, height: float) -> float:
     """Return how long a robot takes to land from a height: vehicles come down slowly near the ground."""
     pacing = robot.profile.pacing
-    descent = min(robot.descent or USUAL_DESCENT, pacing.step.descent)
+    descent = min(robot.travel.descent or USUAL_DESCENT, pacing.step.descent)
     low = min(height, pacing.landing_height)
     slowly = low / min(descent, pacing.landing_rate) if low else 0.0
     return (height - low) / descent + slowly + (pacing.recovery or 0.0)
@@ -203,7 +203,7 @@ def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:
         return inf
     if robot.profile.flies:
         rise = abs(offset(a, b)[2]) / way
-        pace = min(pace, (robot.descent or USUAL_DESCENT) / rise) if rise else pace
+        pace = min(pace, (robot.travel.descent or USUAL_DESCENT) / rise) if rise else pace
     if way < pace**2 / ACCELERATION:
         return 2.0 * sqrt(way / ACCELERATION)
     return way / pace + pace / ACCELERATION

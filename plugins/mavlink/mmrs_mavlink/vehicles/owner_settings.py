@@ -12,7 +12,8 @@ It is as careful as the robot's travel mode asks, never less than its owner has 
 mission count as passed within a radius, which is reduced where the mode asks for that; one that stops
 within that radius of its target is given no more than the acceptance radius. What it keeps from what it
 perceives is increased. Whether it avoids anything at all is its owner's business, since a vehicle that
-leaves its path leaves what was verified.
+leaves its path leaves what was verified. It climbs and descends no faster than its type states: level
+speeds are commanded with each target, but an ArduSub takes vertical ones from its parameters only.
 """
 
 from __future__ import annotations
@@ -196,17 +197,25 @@ def set_up(link: Link, travel: Travel, acceptance: float = inf) -> Iterator[str]
         travel: how carefully it is to go.
         acceptance: metres from a place at which it counts as reached.
     """
-    radii, margins = link.profile.radii, link.profile.autopilot.margins
-    radius = min(travel.radius, acceptance) if link.profile.stops_early else travel.radius
-    found = parameters.read(link, [*radii, *margins])
+    profile, mode = link.profile, f"it travels {travel.mode}"
+    radius = min(travel.radius, acceptance) if profile.stops_early else travel.radius
+    most = {name: (radius * unit, mode) for name, unit in profile.radii.items()}
+    for units, speed, word in (
+        (profile.climbs, travel.climb, "climbs"),
+        (profile.descents, travel.descent, "descends"),
+    ):
+        if speed is not None:
+            why = f"it {word} at {speed:g} m/s, as its type states"
+            most |= {name: (speed * unit, why) for name, unit in units.items()}
+    least = {name: (travel.margin, mode) for name in profile.autopilot.margins}
+    found = parameters.read(link, [*most, *least])
     for name, value in found.items():
-        if name in radii and value > (wanted := radius * radii[name]):
-            yield _changed(link, name, value, wanted, travel)
-        elif name in margins and value < travel.margin:
-            yield _changed(link, name, value, travel.margin, travel)
+        wanted, why = most.get(name) or least[name]
+        if value > wanted if name in most else value < wanted:
+            yield _changed(link, name, value, wanted, why)
 
 
-def _changed(link: Link, name: str, was: float, wanted: float, travel: Travel) -> str:
+def _changed(link: Link, name: str, was: float, wanted: float, why: str) -> str:
     if parameters.write(link, name, wanted):
-        return f"{name} = {wanted:g}, which was {was:g}: it travels {travel.mode}"
-    return f"{name} = {was:g}: the vehicle does not confirm {wanted:g}, for travelling {travel.mode}"
+        return f"{name} = {wanted:g}, which was {was:g}: {why}"
+    return f"{name} = {was:g}: the vehicle does not confirm {wanted:g}, so that {why}"

@@ -6,7 +6,7 @@ from math import cos, dist, inf, radians, sqrt
 
 import pytest
 
-from mmrs_mavlink.program import Local, Robot
+from mmrs_mavlink.program import Local, Robot, Travel
 from mmrs_mavlink.steps.energy import ACCELERATION, TURNING_SECONDS, MeanWind, Reserve, seconds_back
 from mmrs_runtime.controllers.return_paths import way_back
 from mmrs_runtime.controllers.state import State
@@ -16,7 +16,7 @@ TRACK = [("up", Local(0.0, 0.0, 10.0)), ("a", Local(300.0, 0.0, 10.0)), ("b", Lo
 
 
 def robot(**more):
-    given = {"endurance": 1000.0, "cruise": 5.0, "descent": 1.0, "reserve": 0.1} | more
+    given = {"endurance": 1000.0, "cruise": 5.0, "travel": Travel(descent=1.0), "reserve": 0.1} | more
     return Robot("r", "r.jsonl", "copter", HOME, "start", (), **given)
 
 
