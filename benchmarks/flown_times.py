@@ -8,10 +8,10 @@ degrees, `rel` m above home, `vx`, `vy`, `vz` m/s, `armed`, `mode`, `seq`). A ro
 all of its moves as a mission.
 
 Flown times are those of the vehicle's clock: that of the log runs ahead where a simulation falls behind.
-Waits for other robots are left out on both sides. Prints a line for each robot: planned, the bounds of the
-check, flown, the ratio, and the legs that took what was planned within 15 %. Exit code 0 where each robot
-that completed its moves took what was planned within 5 %, all are within their bounds, and 95 % of all legs
-within 15 %; 1 where not; 2 where no folder is given.
+Waits for other robots, and charging, which operators end, are left out on both sides. Prints a line for each
+robot: planned, the bounds of the check, flown, the ratio, and the legs that took what was planned within
+15 %. Exit code 0 where each robot that completed its moves took what was planned within 5 %, all are within
+their bounds, and 95 % of all legs within 15 %; 1 where not; 2 where no folder is given.
 """
 
 from __future__ import annotations

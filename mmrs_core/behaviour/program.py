@@ -15,6 +15,7 @@ from hashlib import sha256
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, TravelMode, Value
+from mmrs_core.scene.headings import bearing
 from mmrs_runtime import program as engine
 from mmrs_runtime.program import SlotId as SlotId
 
@@ -48,6 +49,11 @@ class Heading:
     target: MoveTarget
     device: str = ""
     angle_degrees: float = 0.0
+
+    def seen_from(self, place: Position) -> float | None:
+        """Return the degrees clockwise from north in which a robot at a place looks; None: unknown."""
+        direction = None if self.target.position is None else bearing(place, self.target.position)
+        return None if direction is None else (direction - self.angle_degrees) % 360.0
 
 
 @dataclass(frozen=True, slots=True)

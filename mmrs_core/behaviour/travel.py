@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from mmrs_core.scene import Capability, RobotType
+from mmrs_core.scene import Capability, RobotType, TravelMode
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram
@@ -62,5 +62,10 @@ def speed_of(move: Move, robot: RobotProgram, type: RobotType | None) -> float |
 
 def travel_margins_of(robot: RobotProgram, position_error: float) -> TravelMargins:
     """Return how carefully a robot travels; it goes no nearer past corners than its clearance covers."""
-    margins = TRAVEL_MARGINS[robot.travel_mode]
-    return replace(margins, acceptance=max(NEAREST, min(margins.acceptance, position_error)))
+    acceptance = accepted(robot.travel_mode, position_error)
+    return replace(TRAVEL_MARGINS[robot.travel_mode], acceptance=acceptance)
+
+
+def accepted(mode: TravelMode, position_error: float) -> float:
+    """Return at how many metres a place counts as reached."""
+    return max(NEAREST, min(TRAVEL_MARGINS[mode].acceptance, position_error))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.runs import STRAIGHT_DEGREES, runs_of, turn_degrees
+from mmrs_core.scene.headings import bearing
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram
@@ -60,6 +61,21 @@ class Passages:
     def kinematics(self, move: Move) -> Kinematics:
         """Return what the robot can do in a move."""
         return self._mission if self._index[move.id] in self._uploaded else self._kinematics
+
+    def facing(self, move: Move, path: tuple[Position, ...], before: float | None) -> float | None:
+        """Return where the robot looks after a move that it ends with a stop, degrees clockwise from north.
+
+        One that cannot turn on the spot looks where it drives, whatever its devices point at.
+
+        Args:
+            move: of the robot.
+            path: of the move.
+            before: where the robot looked before; None: not known.
+        """
+        look = move.heading if self._stops else None
+        seen = None if look is None else look.seen_from(path[-1])
+        along = bearing(path[-2], path[-1]) if seen is None and len(path) > 1 else seen
+        return before if along is None else along
 
     def ahead(self, move: Move, path: tuple[Position, ...]) -> Passage | None:
         """Return what a robot saves that need not stop at the end of a move; None: it stops there."""

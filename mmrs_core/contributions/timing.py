@@ -8,6 +8,7 @@ from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
 
+from mmrs_core.behaviour.travel import accepted
 from mmrs_core.contributions.rules import RobotKind
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ def _kinematics(
         landing_rate=landing_rate,
         landing_height=landing_height if landing_rate < inf else 0.0,
         rounds=autopilot.rounds,
+        accepts=min(step.acceptance, accepted(robot.travel_mode, scene.position_error)),
         turn_rate=min(plain.turn_rate, autopilot.turn_rate),
         charging=autopilot.charging,
         mission=mission,

@@ -62,6 +62,7 @@ def kinematics_of(robot: RobotProgram, input: TargetInput) -> Kinematics | None:
 def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
     here, both = robot.home, 0.0
+    facing: float | None = None
     local = input.program.frame.is_local
     passages = Passages(robot, input.move_kinds, kinematics, local=local) if kinematics is not None else None
     for index in _order(robot):
@@ -74,7 +75,9 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
             ahead = passages.ahead(move, path)
             saved = both + (ahead.settling + ahead.overlap / 2.0 if ahead is not None else 0.0)
             both = ahead.overlap / 2.0 if ahead is not None else 0.0
-            duration = kind.seconds(move, path, passages.kinematics(move), robot.travel_mode)
+            limits = replace(passages.kinematics(move), facing=facing)
+            duration = kind.seconds(move, path, limits, robot.travel_mode)
+            facing = passages.facing(move, path, facing) if ahead is None else None
             seconds = _seconds(move, duration, saved, type)
         yield PlannedMove(index, kind.manoeuvre if kind is not None else "", path, seconds)
         here = path[-1] if path else None

@@ -8,6 +8,7 @@ from math import dist, inf, pi, sqrt, tan
 from typing import Any
 
 from mmrs_core.diagnostics import Place
+from mmrs_core.scene.headings import turn
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
 from mmrs_core.scene.timing import MoveSeconds, Rates, bounded, noticing
 from mmrs_runtime.policies import Policy
@@ -56,8 +57,6 @@ class Capability:
             autopilot: how its autopilot takes them, in that mode.
         """
         stated: dict[str, Any] = dict(self.leg_timings.get(mode, {}))
-        if "acceleration" in stated:
-            stated["lag"] = 0.0
         paced = replace(
             autopilot,
             speed=min(autopilot.speed, self.speed[1]),
@@ -164,9 +163,12 @@ class Kinematics:
             `fastest` is what is left of it against the wind or the current. None: nothing is lost.
         turning_radius: of its narrowest curve, metres; 0: it turns on the spot. Else it shunts where it
             stops: it keeps within so far of that place, and takes up to 180° / `turn_rate`.
+        halt: seconds that each arc of shunting takes beside its length.
+        accepts: metres from a target at which it counts as reached.
         rounds: whether it drives round instead of shunting, if there is room.
         mission: timing of the legs of a mission that is uploaded; None: as that of single ones.
         upright: timing of launch and landing; None: as that of legs.
+        facing: degrees clockwise from north in which it looks before a move; None: not known.
     """
 
     cruise: float
@@ -191,9 +193,12 @@ class Kinematics:
     launches: bool = False
     own_speed: float | None = None
     turning_radius: float = 0.0
+    halt: float = 0.0
+    accepts: float = 0.0
     rounds: bool = False
     mission: LegTiming | None = None
     upright: LegTiming | None = None
+    facing: float | None = None
 
     def fits_curve(self, turn: float, leg: float) -> bool:
         """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.
@@ -234,10 +239,16 @@ class Kinematics:
         """
         return 180.0 / self.turn_rate if self.turning_radius > 0.0 else 0.0
 
-    def turning(self) -> MoveSeconds:
-        """Return how long a turn on the spot takes: half a circle at most, of which half is expected."""
+    def turning(self, goal: float | None = None) -> MoveSeconds:
+        """Return how long a turn on the spot takes: half a circle at most.
+
+        Args:
+            goal: degrees clockwise from north in which it is to look; where that, or where it looks before,
+                is not known, half of the most is expected.
+        """
         half = bounded(180.0 / self.turn_rate, self.timing)
-        return MoveSeconds(0.0, half.expected / 2.0, half.longest + noticing(self.timing))
+        angle = 90.0 if goal is None or self.facing is None else abs(turn(self.facing, goal))
+        return MoveSeconds(0.0, angle / self.turn_rate, half.longest + noticing(self.timing))
 
     def charging_time(self, seconds: float) -> MoveSeconds:
         """Return how long charging takes that is to take so long: until the batteries are full.
@@ -252,7 +263,16 @@ class Kinematics:
         within = self.timing.shunts_within * self.turning_radius if self.turning_radius > 0.0 else 0.0
         circling = 2.0 * pi * self.turning_radius / wanted if wanted > 0.0 else inf
         return Rates(
-            wanted, self.climb, self.descent, self.timing, self.shunting, self.rounds, within, circling
+            wanted,
+            self.climb,
+            self.descent,
+            self.timing,
+            self.shunting,
+            self.halt,
+            self.rounds,
+            within,
+            circling,
+            self.accepts,
         )
 
     def flown_by(self, timing: LegTiming) -> Kinematics:

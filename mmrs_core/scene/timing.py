@@ -10,9 +10,10 @@ one, as far as the corner's radius allows.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import dist, exp, hypot, inf, sqrt
+from math import atan2, ceil, cos, dist, exp, hypot, inf, pi, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
+from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
 from mmrs_runtime.timing import IDEAL, LegTiming
 
@@ -33,6 +34,9 @@ NOTICING = 0.5
 
 ANSWERING = 0.2
 """Seconds after which a device has answered, at most."""
+
+ARC = 0.5
+"""Radians of an arc of shunting at most: it leads half of the turning radius from where the robot stands."""
 
 RETURNING = 0.63
 """Metres per second at which a robot comes back that has gone beyond its target."""
@@ -81,10 +85,11 @@ class Rates:
         cruise: metres per second, level.
         climb, descent: metres per second; one that is not positive rules that direction out.
         timing: of its autopilot.
-        shunting: seconds that turning takes before a level leg, at most.
-        rounds: whether it is expected to drive round rather than to turn before it goes.
+        shunting: seconds that turning takes before a level leg, at most. halt: of each arc of that.
+        rounds: whether it drives round rather than turns before it goes, if there is room.
         shunts_within: metres up to which a leg may be shunted for.
         circling: seconds in which it drives a full circle, which getting onto a longer leg takes at most.
+        accepts: metres from a target at which it counts as reached: shorter legs are taken together.
         bound: -1: these are the fewest seconds; 1: the most; 0: those expected.
         share: of the expected seconds that legs from a stop to a stop take.
         least: seconds that each takes, one of no length as well.
@@ -95,9 +100,11 @@ class Rates:
     descent: float
     timing: LegTiming = IDEAL
     shunting: float = 0.0
+    halt: float = 0.0
     rounds: bool = False
     shunts_within: float = inf
     circling: float = 0.0
+    accepts: float = 0.0
     bound: int = 0
     share: float = 1.0
     least: float = 0.0
@@ -158,21 +165,47 @@ class Rates:
         rate = self.climb if rise > 0 else self.descent
         return abs(rise) / rate if rate > 0 else inf
 
-    def from_stop_to_stop(self, start: Position, end: Position) -> float:
-        """Return the seconds of a straight leg from a stop to a stop, turning and settling included."""
+    def from_stop_to_stop(self, start: Position, end: Position, facing: float | None = None) -> float:
+        """Return the seconds of a straight leg from a stop to a stop, turning and settling included.
+
+        Args:
+            start, end: of the leg.
+            facing: degrees clockwise from north in which the robot looks before it; None: not known.
+        """
         if self.bound < 0 and dist(start, end) <= self.timing.acceptance:
             return 0.0
         seconds = self.share * self._straight(start, end)
+        if not self.bound and 0.0 < (length := dist(start, end)) <= self.accepts:
+            seconds = self._among_short_ones(start, end, int(self.accepts / length) + 1)
         if self.bound and self.timing.still > 0.0:
             inexact = self._between_inexact_ends(start, end)
             seconds = min(seconds, inexact) if self.bound < 0 else max(seconds, inexact)
-        return max(self.least, seconds + self.turning(start, end))
+        return max(self.least, seconds + self.turning(start, end, facing))
 
-    def turning(self, start: Position, end: Position) -> float:
-        """Return the seconds that turning is expected to take before a leg."""
-        if self.shunting <= 0.0 or self.rounds or start[:2] == end[:2]:
+    def _among_short_ones(self, start: Position, end: Position, legs: int) -> float:
+        """Return the seconds of each of so many legs of which the robot takes no notice but of the last."""
+        east, north, up = (p + legs * (q - p) for p, q in zip(start, end, strict=True))
+        return self._straight(start, (east, north, up)) / legs
+
+    def turning(self, start: Position, end: Position, facing: float | None = None) -> float:
+        """Return the seconds that it takes to get onto a leg, by shunting or by a curve.
+
+        The most are those of any heading. Where it is not known, one that may drive round is expected to be
+        on the leg already.
+        """
+        along, away = bearing(start, end), dist(start[:2], end[:2])
+        if self.shunting <= 0.0 or along is None:
             return 0.0
-        return self.shunting if dist(start[:2], end[:2]) <= self.shunts_within else self.circling
+        if self.bound > 0 or (facing is None and not self.rounds):
+            return self.shunting if away <= self.shunts_within else self.circling
+        aside = 0.0 if facing is None else abs(turn(facing, along))
+        if aside <= self.timing.aside:
+            return 0.0
+        if self.rounds and away > self.shunts_within * sin(radians(min(90.0, aside))):
+            radius = self.circling * self.cruise / (2.0 * pi)
+            return (_rounded(away, radians(aside), radius) - away) / self.cruise
+        driving = self.shunting - self.halt * ceil(pi / ARC)
+        return driving * aside / 180.0 + self.halt * ceil(radians(aside) / ARC)
 
     def rise(self, metres: float) -> float:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""
@@ -292,6 +325,13 @@ class Rates:
     def _settling(self, fastest: float) -> float:
         beyond = self.timing.overshoot * fastest if self.timing.overshoot > 0.0 else 0.0
         return self.timing.settling + ((beyond - SETTLED) / RETURNING if beyond > SETTLED else 0.0)
+
+
+def _rounded(away: float, aside: float, radius: float) -> float:
+    """Return the metres by a curve and a tangent to a place so far away, and so many radians aside."""
+    ahead, beside = away * cos(aside), away * sin(aside) - radius
+    straight = sqrt(max(0.0, ahead * ahead + beside * beside - radius * radius))
+    return radius * ((atan2(beside, ahead) + atan2(radius, straight)) % (2.0 * pi)) + straight
 
 
 def _speeding(speed: float, acceleration: float, jerk: float) -> float:

@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
-from math import atan2, cos, degrees, hypot, inf, radians, sin, sqrt
+from math import cos, hypot, inf, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene import Kinematics, Position
+from mmrs_core.scene.headings import turn
 from mmrs_core.scene.timing import Rates
 
 CLIMBING = 0.3
@@ -166,17 +167,6 @@ def _against(start: Position, finish: Position, flow: Flow) -> float:
     if level <= 0.0:
         return hypot(*flow)
     return -((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
-
-
-def bearing(start: Position, finish: Position) -> float | None:
-    """Return degrees clockwise from north; None straight up, straight down or on the spot."""
-    east, north = finish[0] - start[0], finish[1] - start[1]
-    return degrees(atan2(east, north)) % 360.0 if hypot(east, north) > 1e-9 else None
-
-
-def turn(first: float, last: float) -> float:
-    """Return the degrees to turn from one heading to another, clockwise positive, -180 to 180."""
-    return (last - first + 180.0) % 360.0 - 180.0
 
 
 def wind(environment: Mapping[str, float]) -> Flow:

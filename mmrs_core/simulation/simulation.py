@@ -12,7 +12,7 @@ surroundings, a robot that flies detects what lies below it whenever one of its 
 from __future__ import annotations
 
 from bisect import bisect_right
-from itertools import pairwise
+from dataclasses import replace
 from math import dist, hypot, inf
 from operator import attrgetter
 from pathlib import Path
@@ -26,7 +26,7 @@ from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import DISTANCE, Position
-from mmrs_core.scene.timing import MoveSeconds
+from mmrs_core.scene.headings import bearing
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of, move_kinds_of
@@ -35,12 +35,10 @@ from mmrs_core.simulation.legs import (
     Flow,
     Stretch,
     TimedLeg,
-    bearing,
     cost,
     current,
     response_stretches,
     stretches,
-    turn,
     wind,
 )
 from mmrs_core.simulation.surroundings import sights_in
@@ -86,6 +84,7 @@ class SimulatedRobot(Vehicle):
         self._wind, self._current = wind(given.environment), current(given.environment)
         self._grounded, self._stopped, self._halted = True, False, False
         self._rolling = 0.0
+        self._facing: float | None = None
         self._bears = False
         self._repeats: dict[str, tuple[float, float]] = {}
         self._move: Move | None = None
@@ -233,13 +232,14 @@ class SimulatedRobot(Vehicle):
     def _travel(
         self, move: Move, kind: MoveKind, path: tuple[Position, ...], now: float, through: bool
     ) -> None:
-        kinematics = self._passages.kinematics(move)
-        duration = kind.seconds(move, path, kinematics, self._robot.travel_mode)
+        kinematics = replace(self._passages.kinematics(move), facing=self._facing)
         rates = kinematics.rates(move.speed)
-        shunting = sum(rates.turning(*leg) for leg in pairwise(path))
-        stood, ahead = self._rolling == 0.0, self._passages.ahead(move, path) if through else None
-        seconds = duration.expected - shunting - self._rolling
+        turning = rates.turning(path[0], path[1], self._facing) if len(path) > 1 else 0.0
+        ahead = self._passages.ahead(move, path) if through else None
+        seconds = kind.seconds(move, path, kinematics, self._robot.travel_mode).expected
+        seconds -= turning + self._rolling
         self._rolling = 0.0
+        self._facing = self._passages.facing(move, path, self._facing) if ahead is None else None
         if ahead is not None:
             seconds -= ahead.settling + ahead.overlap / 2.0
             self._rolling = ahead.overlap / 2.0
@@ -247,29 +247,11 @@ class SimulatedRobot(Vehicle):
         if not found:
             self._fault = Fault("WIND", "too strong to make headway")
             return
-        if len(path) == 1:
-            found = (self._turning(move, found[0], duration),)
-        elif stood and shunting > 0.0 and not through:
-            found = (*self._shunted(found[0]), *found)
+        if turning > 0.0:
+            found = (Stretch(path[0], path[0], turning, 1.0), *found)
         self._append(found, now, move.heading, free=move.is_a(RECHARGE))
         if all(bearing(each.start, each.finish) is None for each in found):
             self._hold_against_wind(sum(each.seconds for each in found))
-
-    def _turning(self, move: Move, stretch: Stretch, duration: MoveSeconds) -> Stretch:
-        """Return a stay on the spot, as long as a turn to the move's heading takes at least."""
-        goal = self._aim(move.heading, stretch.finish)
-        if goal is None:
-            return stretch
-        seconds = abs(turn(self._legs[-1].headings[1], goal)) / self._kinematics.turn_rate
-        seconds = min(max(seconds, duration.shortest), duration.longest)
-        return Stretch(stretch.start, stretch.finish, seconds, stretch.rate)
-
-    def _shunted(self, first: Stretch) -> tuple[Stretch, ...]:
-        """Return the stay in which a robot that cannot turn on the spot comes round to where it goes."""
-        goal = bearing(first.start, first.finish)
-        angle = 0.0 if goal is None else abs(turn(self._legs[-1].headings[1], goal))
-        seconds = angle / self._kinematics.turn_rate
-        return (Stretch(first.start, first.start, seconds, 1.0),) if seconds > 0.0 else ()
 
     def _append(
         self, found: tuple[Stretch, ...], now: float, look: Heading | None = None, *, free: bool = False
@@ -278,7 +260,7 @@ class SimulatedRobot(Vehicle):
         begin = now
         for each in found:
             last = self._legs[-1]
-            heading = self._aim(look, each.finish)
+            heading = None if look is None else look.seen_from(each.finish)
             if heading is None:
                 heading = bearing(each.start, each.finish)
             goal = last.headings[1] if heading is None else heading
@@ -326,12 +308,6 @@ class SimulatedRobot(Vehicle):
 
     def _leg(self, now: float) -> TimedLeg:
         return self._legs[self._leg_index(now)]
-
-    def _aim(self, look: Heading | None, position: Position) -> float | None:
-        if look is None or look.target.position is None:
-            return None
-        direction = bearing(position, look.target.position)
-        return None if direction is None else (direction - look.angle_degrees) % 360.0
 
     @property
     def _state(self) -> str:

@@ -12,6 +12,7 @@ from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
+from mmrs_core.scene.headings import bearing
 from mmrs_core.scene.timing import MoveSeconds, noticing
 
 if TYPE_CHECKING:
@@ -172,9 +173,10 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
     rates, legs = kinematics.rates(move.speed), list(pairwise(path))
     soonest = rates.soonest()
     quickest = soonest.eased if move.flows else soonest.from_stop_to_stop
+    faced = (kinematics.facing, *(bearing(a, b) for a, b in legs))
     return MoveSeconds(
         sum(quickest(a, b) for a, b in legs),
-        sum(rates.from_stop_to_stop(a, b) for a, b in legs),
+        sum(rates.from_stop_to_stop(*leg, facing) for leg, facing in zip(legs, faced, strict=False)),
         sum(rates.latest().from_stop_to_stop(a, b) for a, b in legs),
     )
 
@@ -207,7 +209,7 @@ def charging_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics
 
 def turning_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
     """Return the duration of a turn on the spot, from and to any heading."""
-    return kinematics.turning()
+    return kinematics.turning(None if move.heading is None else move.heading.seen_from(path[-1]))
 
 
 def _declared(move: Move) -> float:

@@ -33,7 +33,8 @@ class LegTiming:
         spread: by which share legs take longer or shorter than expected.
         reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
-            spot; it gets onto longer ones by one curve.
+            spot: to a place abreast of it; by one curve, it gets onto longer legs and to places more ahead.
+        aside: degrees from where it looks within which it sets out to a place without either.
         unlimited: how it takes legs where it does not keep the limits of the robot's type; None: as here.
         limited: how it takes them where it keeps them all; None: as here.
     """
@@ -56,6 +57,7 @@ class LegTiming:
     spread: float = 0.0
     reporting: float = 0.0
     shunts_within: float = inf
+    aside: float = 0.0
     unlimited: LegTiming | None = None
     limited: LegTiming | None = None
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
+from math import ceil, pi
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Robot, RobotType, Scene
 from mmrs_core.scene.attributes import number, text
+from mmrs_core.scene.timing import ARC
 from mmrs_core.transformation.kinds import PLAIN_ROBOT, kinematics_for
 from mmrs_rover.names import ROVER
 from mmrs_rover.terrain import barrier
@@ -15,8 +16,8 @@ from mmrs_rover.terrain import barrier
 SHUNTING_PACE = 0.4
 """Metres per second at which a rover shunts, if it is not slower."""
 
-ARCS, HALT = 7, 4.5
-"""Arcs of half a turn at most, and the seconds that speeding up and halting add to each.
+HALT = 4.5
+"""Seconds that speeding up and halting add to each arc.
 
 An ArduRover 4.7-dev of a radius of 1.2 m in its own simulation took 14 s to turn by 56°, 27 s by 125° and
 36 s by 168°; one of 2 m took 45 s by 135°.
@@ -41,8 +42,9 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     if radius == 0.0:
         return known
     pace = max(known.slowest, min(SHUNTING_PACE, known.cruise))
-    half_turn = pi * radius / pace + ARCS * HALT
-    return replace(known, turning_radius=radius, turn_rate=min(known.turn_rate, 180.0 / half_turn))
+    half_turn = pi * radius / pace + ceil(pi / ARC) * HALT
+    rate = min(known.turn_rate, 180.0 / half_turn)
+    return replace(known, turning_radius=radius, turn_rate=rate, halt=HALT)
 
 
 def turning_radius(robot_type: RobotType) -> float:

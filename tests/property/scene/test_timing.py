@@ -1,7 +1,7 @@
 """Laws of the model of legs, for all lengths, speeds, accelerations and jerks."""
 
 from dataclasses import replace
-from math import hypot, inf, pi, radians, sin, tan
+from math import cos, hypot, inf, pi, radians, sin, tan
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from mmrs_core.scene import Kinematics
+from mmrs_core.scene.headings import bearing
 from mmrs_core.scene.timing import Rates
 from mmrs_runtime.timing import IDEAL, LegTiming
 
@@ -196,6 +197,37 @@ def test_a_robot_that_turns_first_is_soonest_where_it_need_not():
     rounds = replace(rover, rounds=True)
     assert rounds.from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(11.0)
     assert rounds.latest().from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(20.0)
+
+
+@given(st.floats(9.0, 60.0), st.floats(0.0, 180.0), st.floats(0.5, 3.0))
+def test_a_car_drives_round_by_a_curve_and_a_tangent(metres, aside, radius):
+    rover = Rates(2.0, 1.0, 1.0, shunting=9.0, rounds=True, shunts_within=0.0, circling=pi * radius)
+    seconds = rover.turning(NONE, east(metres, NONE), 90.0 - aside)
+    heading, place, left = radians(90.0 - aside), (0.0, 0.0), 0.0
+    while cos(heading - radians(bearing((*place, 0.0), east(metres, NONE)))) < 1.0 - 1e-6:
+        step = 1e-3
+        heading += step
+        place = (place[0] + step * radius * sin(heading), place[1] + step * radius * cos(heading))
+        left += step * radius
+    driven = left + hypot(metres - place[0], place[1])
+    assert seconds == pytest.approx((driven - metres) / 2.0, abs=0.02)
+
+
+def test_a_car_shunts_to_what_is_near_and_aside_by_whole_arcs():
+    rover = Rates(
+        1.0, 1.0, 1.0, LegTiming(1.0, aside=15.0), shunting=36.0, halt=4.0, rounds=True, shunts_within=10.0
+    )
+    assert rover.turning(NONE, east(5.0, NONE), 90.0) == 0.0
+    assert rover.turning(NONE, east(5.0, NONE), 76.0) == 0.0
+    assert rover.turning(NONE, east(5.0, NONE), 0.0) == pytest.approx(4.0 * 4.0 + 4.0)
+    assert rover.turning(NONE, east(5.0, NONE), 270.0) == pytest.approx(36.0)
+    assert rover.turning(NONE, east(11.0, NONE), 0.0) < 4.0
+
+
+def test_legs_within_the_acceptance_are_taken_together():
+    rates = Rates(5.0, 1.0, 1.0, LegTiming(1.0), accepts=1.0)
+    assert rates.from_stop_to_stop(HERE, east(0.6)) == pytest.approx(seconds(LegTiming(1.0), 1.2) / 2.0)
+    assert rates.latest().from_stop_to_stop(HERE, east(0.6)) == seconds(LegTiming(1.0), 0.6)
 
 
 @given(metres=st.floats(9.7, 60.0), radius=st.floats(0.5, 3.0), speed=st.floats(0.5, 3.0))

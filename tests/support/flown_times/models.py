@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from math import dist
 from pathlib import Path
 
 from mmrs_core.analysis.durations import Duration, durations_of
 from mmrs_core.analysis.figures import seconds_of
 from mmrs_core.analysis.motion import motions
-from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.cli.behaviours import Loaded, load_behaviour
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.contributions.runs import runs_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.generation.planned_moves import planned_moves
-from mmrs_core.scene import Device, Position
+from mmrs_core.scene import Device, Kinematics, Name, Position, Robot, Scene
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
 from mmrs_mavlink.plugin.plans.items import PlanItem
+
+ACCEPTANCE = {"rover-arcs-acceptance-1": 1.0}
+"""Metres at which places counted as reached on flights for which ``--acceptance`` was given."""
+
+RECHARGE = (BEHAVIOUR, "Recharge")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +70,19 @@ def opened(folder: Path, *, px4: bool = False) -> tuple[Session, Loaded]:
     return session, loaded
 
 
+def _accepting(
+    of: Callable[[Robot, Scene], Kinematics], metres: float, robot: Robot, scene: Scene
+) -> Kinematics:
+    return replace(of(robot, scene), accepts=metres)
+
+
 class Modelled:
     """One robot of a flight as it is modelled."""
 
-    def __init__(self, session: Session, loaded: Loaded, robot: RobotProgram) -> None:
-        self.robot = robot
+    def __init__(
+        self, session: Session, loaded: Loaded, robot: RobotProgram, accepts: float | None = None
+    ) -> None:
+        self.robot, self._accepts = robot, accepts
         self._contributions, self._program, self._place = session.contributions, loaded.program, loaded.place
 
     @cached_property
@@ -105,25 +119,33 @@ class Modelled:
         return items
 
     def estimates(self, *, uploaded: bool) -> dict[str, Estimate]:
-        """Return how long each move takes; `uploaded`: as a mission, all of it."""
+        """Return how long each move takes but charging, which an operator ends; `uploaded`: as a mission."""
         check = self._check(uploaded=uploaded)
         durations = durations_of(check, self.robot, motions(check)[self.robot.id]).of
         type = self._place.types[self.robot.type_name]
         found: dict[str, Estimate] = {}
         for each in planned_moves(self.robot, self._target(uploaded=uploaded)):
             move = self.robot.moves[each.index]
-            if each.seconds is not None:
+            if each.seconds is not None and not move.is_a(RECHARGE):
                 acting = sum(seconds_of(action, type) or 0.0 for action in (*move.before, *move.after))
                 whole = each.seconds.expected
                 found[move.id] = Estimate(whole - acting, whole, durations[each.index])
         return found
 
-    def _target(self, *, uploaded: bool) -> TargetInput:
+    def _kinds(self, *, uploaded: bool) -> Mapping[Name, RobotKind]:
         kinds = self._contributions.robot_kinds
+        if self._accepts is not None:
+            kinds = {
+                name: replace(kind, kinematics=partial(_accepting, kind.kinematics, self._accepts))
+                for name, kind in kinds.items()
+            }
+        return as_uploaded(kinds) if uploaded else kinds
+
+    def _target(self, *, uploaded: bool) -> TargetInput:
         return TargetInput(
             self._program,
             self._place.types,
-            as_uploaded(kinds) if uploaded else kinds,
+            self._kinds(uploaded=uploaded),
             self._contributions.move_kinds,
             extensions=self._contributions.extensions,
             environment=self._place.environment or {},
@@ -132,11 +154,10 @@ class Modelled:
         )
 
     def _check(self, *, uploaded: bool) -> CheckInput:
-        kinds = self._contributions.robot_kinds
         return CheckInput(
             self._program,
             self._place.types,
-            as_uploaded(kinds) if uploaded else kinds,
+            self._kinds(uploaded=uploaded),
             self._contributions.move_kinds,
             self._place.areas,
             self._place.environment or {},

@@ -158,7 +158,8 @@ def test_hook_mmrs_vehicle_timings():
     timing = VehicleTiming("kite", lambda robot_type: slow)
     plugin = type_of_plugin(mmrs_robot_kinds=lambda: (kind,), mmrs_vehicle_timings=lambda: (timing,))
     known = load_plugins(only_core=True, extra={"kites": plugin}).contributions
-    found = known.robot_kinds[KITE].kinematics(SimpleNamespace(type=kite_type, payload=0.0), None)
+    robot = SimpleNamespace(type=kite_type, payload=0.0, travel_mode="NORMAL")
+    found = known.robot_kinds[KITE].kinematics(robot, SimpleNamespace(position_error=0.0))
     assert (found.timing.acceleration, found.timing.settling, found.launch) == (0.5, 2.0, 7.0)
     assert (found.cruise, found.fastest) == (3.0, 3.0)
     assert known.vehicle_timings == {"kite": timing}

@@ -8,15 +8,14 @@ from itertools import pairwise
 import pytest
 
 from mmrs_core.scene import Kinematics
+from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.simulation.legs import (
     CLIMBING,
     TimedLeg,
-    bearing,
     cost,
     current,
     response_stretches,
     stretches,
-    turn,
     wind,
 )
 from mmrs_runtime.timing import LegTiming

@@ -77,8 +77,13 @@ def test_a_robot_begins_at_its_home(fly):
 def test_a_turn_takes_the_angle_over_the_turn_rate(fly):
     look = Heading(MoveTarget((0.0, -9.0, 0.0)))
     head = Move("turn", ((BEHAVIOUR, "HeadTo"), MOVE), heading=look)
-    run = fly(program(robot("r", [head])))
-    assert times(run, "turn") == (0.0, 2.0)
+    run = fly(program(robot("r", [go("g", (0, 9, 0)), head])))
+    assert times(run, "turn") == (3.0, 5.0)
+
+
+def test_half_of_the_longest_turn_is_expected_of_a_robot_that_has_not_moved_yet(fly):
+    head = Move("turn", ((BEHAVIOUR, "HeadTo"), MOVE), heading=Heading(MoveTarget((0.0, -9.0, 0.0))))
+    assert times(fly(program(robot("r", [head]))), "turn") == (0.0, 1.0)
 
 
 def test_device_actions_take_their_declared_time_and_feedback_none(fly):

@@ -70,24 +70,31 @@ Measured with ArduRover 4.7-dev and a radius of 1.2 m: legs of 11 m after a corn
 of 6.6 m after 90 degrees did not end at its target.
 """
 
+ASIDE_DEGREES = 15.0
+"""Up to here a rover sets out at once: it is on its leg again within a fifth of its turning radius."""
+
 ROVER = AutopilotTiming(
     step=LegTiming(
         acceleration=1.0,
+        jerk=1.0,
         corner_radius=0.0,
         acceptance=1.0,
-        settling=0.6,
+        keeps_acceleration=False,
         spread=0.15,
         reporting=HEARTBEATS,
         shunts_within=SHUNTS_WITHIN,
+        aside=ASIDE_DEGREES,
     ),
     mission=LegTiming(
         acceleration=1.0,
         jerk=1.0,
         corner_radius=2.0,
-        settling=2.3,
+        settling=2.4,
+        keeps_acceleration=False,
         spread=0.2,
         reporting=5.0,
         shunts_within=0.0,
+        aside=ASIDE_DEGREES,
     ),
     rounds=True,
 )

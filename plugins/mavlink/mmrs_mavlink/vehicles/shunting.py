@@ -20,13 +20,10 @@ from mmrs_runtime.controllers.geodesy import bearing, offset
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link, Message
-from ..profiles.pacing import SHUNTS_WITHIN
+from ..profiles.pacing import ASIDE_DEGREES, SHUNTS_WITHIN
 from ..program import Place
 from .mode_control import ModeControl
 from .telemetry import Telemetry
-
-ASIDE_DEGREES = 15.0
-"""Up to here a vehicle sets out at once: it is on its leg again within a fifth of its turning radius."""
 
 FACING_DEGREES = 5.0
 """How exactly it is turned."""

@@ -11,10 +11,10 @@ from flight_crew import manned, robot_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_mavlink.profiles.pacing import SHUNTS_WITHIN
+from mmrs_mavlink.profiles.pacing import ASIDE_DEGREES, SHUNTS_WITHIN
 from mmrs_mavlink.program import Geographic, Local, Travel
 from mmrs_mavlink.services.uploads import Uploads
-from mmrs_mavlink.vehicles.shunting import ASIDE_DEGREES, Shunting
+from mmrs_mavlink.vehicles.shunting import Shunting
 from mmrs_runtime.controllers.geodesy import bearing, distance, metres_per_degree
 
 HOME = Geographic(42.37, 13.35, 0.0)

@@ -1,0 +1,21 @@
+"""Headings: degrees clockwise from north."""
+
+from __future__ import annotations
+
+from math import atan2, degrees, hypot
+
+from mmrs_core.scene.primitives import Position
+
+SPOT = 1e-9
+"""Metres in the plane below which one place is above another."""
+
+
+def bearing(start: Position, finish: Position) -> float | None:
+    """Return the heading from one place to another; None straight up, straight down or on the spot."""
+    east, north = finish[0] - start[0], finish[1] - start[1]
+    return degrees(atan2(east, north)) % 360.0 if hypot(east, north) > SPOT else None
+
+
+def turn(first: float, last: float) -> float:
+    """Return the degrees to turn from one heading to another, clockwise positive, -180 to 180."""
+    return (last - first + 180.0) % 360.0 - 180.0
