@@ -13,6 +13,7 @@ from mmrs_runtime.timing import LegTiming
 
 from ..profiles import VehicleProfile
 from ..profiles.modes import AUTO, GUIDED
+from ..profiles.pacing import UNKNOWN
 from .curves import FEWEST, LARGEST_JERK, Ramp, plateaus_in, ramps_in, with_jerk
 from .flight import Flags, Flight, Floats
 from .motion import (
@@ -162,7 +163,8 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
     settled = list[float]()
     if speeding and jerks and tops:
         a, d, j = (float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
-        timing = LegTiming(acceleration=a, deceleration=d, jerk=j)
+        usual = _usual(flight.profile, flown_as)
+        timing = LegTiming(acceleration=a, deceleration=d, jerk=j, lag=usual.lag, lag_within=usual.lag_within)
         legs = [each for each in legs_of(flight, level.ramps, still) if isfinite(each.done - each.begun)]
         overshoot, settled = _beside(legs, timing, max(tops))
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
@@ -171,6 +173,12 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
         missing = unclear = "no acceleration and speed to judge legs by"
     yield figure("overshoot", "s", () if overshoot is None else (overshoot,), unclear)
     yield figure("settlingTime", "s", settled, missing)
+
+
+def _usual(profile: VehicleProfile | None, flown_as: str) -> LegTiming:
+    """Return how a vehicle's autopilot takes legs, whose lag no type states."""
+    pacing = UNKNOWN if profile is None else profile.pacing
+    return pacing.mission if flown_as == MISSION and pacing.mission is not None else pacing.step
 
 
 def _still(profile: VehicleProfile | None) -> float:

@@ -11,6 +11,7 @@ from flown_curves import Curve, flown
 
 from mmrs_mavlink.calibration.figures import fastest, figures_of
 from mmrs_mavlink.calibration.reading import flight_in
+from mmrs_mavlink.profiles import profile_for
 
 OUT_AND_BACK = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 15.0, 20.0)]
 UP_AND_DOWN = [(0.0, 0.0, 10.0), (0.0, 0.0, 40.0), (0.0, 0.0, 10.0), (0.0, 0.0, 40.0)]
@@ -47,6 +48,16 @@ def test_a_mission_has_figures_of_its_own(tmp_path):
     assert found["MISSION", "maxJerk"].median == pytest.approx(1.2, rel=0.15)
     assert found["MISSION", "maxAcceleration"].median == pytest.approx(2.0, rel=0.1)
     assert found["MISSION", "cornerRadius"].missing == "no corner was passed without a stop"
+
+
+def test_the_lag_of_an_autopilot_is_not_settling(tmp_path):
+    (tmp_path / "flight").write_bytes(dataflash(flown(OUT_AND_BACK, COPTER)))
+    flight = flight_in(tmp_path / "flight")
+    diving = figures_of(replace(flight, profile=profile_for("sub")))
+    settled = [
+        each.median for each in (*figures_of(flight), *diving) if each.name == "settlingTime" and each.values
+    ]
+    assert settled[1] < settled[0] - 2.0
 
 
 def test_upright_legs_tell_climb_and_descent(tmp_path):
