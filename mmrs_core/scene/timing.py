@@ -180,6 +180,8 @@ class Rates:
         if self.bound and self.timing.still > 0.0:
             inexact = self._between_inexact_ends(start, end)
             seconds = min(seconds, inexact) if self.bound < 0 else max(seconds, inexact)
+        if self.bound > 0:
+            seconds += self.timing.stall
         return max(self.least, seconds + self.turning(start, end, facing))
 
     def _among_short_ones(self, start: Position, end: Position, legs: int) -> float:

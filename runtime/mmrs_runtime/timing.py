@@ -27,6 +27,7 @@ class LegTiming:
         settling: seconds from the end of a leg until it is reported as done; negative: before its end.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
             after some time; and the time constant of that, seconds.
+        stall: seconds for which it may stand at a target before it counts as reached, at most.
         keeps_acceleration: whether it is expected to keep the acceleration that the robot type states.
         overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
             speed, that is, seconds.
@@ -52,6 +53,7 @@ class LegTiming:
     settling: float = 0.0
     lag: float = 0.0
     lag_within: float = 1.0
+    stall: float = 0.0
     keeps_acceleration: bool = True
     overshoot: float = 0.0
     spread: float = 0.0

@@ -224,6 +224,13 @@ def test_a_car_shunts_to_what_is_near_and_aside_by_whole_arcs():
     assert rover.turning(NONE, east(11.0, NONE), 0.0) < 4.0
 
 
+def test_a_leg_that_may_stall_takes_longer_at_most():
+    plain, stalling = Rates(2.0, 1.0, 1.0, LegTiming(1.0)), Rates(2.0, 1.0, 1.0, LegTiming(1.0, stall=35.0))
+    leg = (HERE, east(9.0))
+    assert stalling.from_stop_to_stop(*leg) == plain.from_stop_to_stop(*leg)
+    assert stalling.latest().from_stop_to_stop(*leg) == plain.latest().from_stop_to_stop(*leg) + 35.0
+
+
 def test_legs_within_the_acceptance_are_taken_together():
     rates = Rates(5.0, 1.0, 1.0, LegTiming(1.0), accepts=1.0)
     assert rates.from_stop_to_stop(HERE, east(0.6)) == pytest.approx(seconds(LegTiming(1.0), 1.2) / 2.0)
