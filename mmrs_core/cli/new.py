@@ -13,7 +13,7 @@ import typer
 from mmrs_core.cli.asking import ask, is_terminal
 from mmrs_core.cli.output import counted, progress, report, say, say_json, table, tell
 from mmrs_core.cli.protection import ProtectedError
-from mmrs_core.cli.replacing import replace_files
+from mmrs_core.cli.replacing import make_folder
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors
@@ -102,7 +102,7 @@ def new(
         if has_errors(made.diagnostics):
             raise InvalidModelError("nothing written: the project would not be valid", made.diagnostics)
         report(made.diagnostics)
-    replace_files(made.files)
+    make_folder(folder, made.files)
     if json:
         say_json({"files": sorted(made.files)})
         return 0
@@ -156,7 +156,7 @@ def _begun(
     else:
         tell(f"{step()} What are they to do?")
         wanted = _asked_tasks(beginning, robots)
-    with progress("trying which robots can do the tasks"):
+    with progress("planning the mission"):
         return beginning.project(folder, title, robots, wanted)
 
 
@@ -325,4 +325,4 @@ def _tell_next(folder: Path, made: ImportResult, empty: bool) -> None:
     tasks = sum(each.became.endswith("Task") for each in made.outcomes)
     them = "it" if tasks == 1 else "them"
     say(f"{counted(tasks, 'task')} laid beside the homes: move {them}, and read the comments in mission.xmi")
-    say(f"next: mmrs plan {where}; mmrs preview {where}; mmrs run {where} --log {where}/logs")
+    say(f"next: mmrs plan {where}; mmrs preview {where}; mmrs simulate {where} -o {where}/logs")
