@@ -173,6 +173,8 @@ class Beginning:
         if possible:
             return min(possible, key=lambda each: each.rank)
         able, _ = self.doers(task, [name for name in self._contributions.robot_types if name not in found])
+        if not able and len({*found.values()}) == 1:
+            raise UsageError(f"{task.source}: {found.popitem()[1]}")  # its attributes are wrong
         words = f"{', '.join(able)} can" if able else "no installed type can"
         reasons = tuple(f"{name}: {reason}" for name, reason in found.items())
         kind = self.kind_of(task)

@@ -13,6 +13,7 @@ import pytest
 from built_wheels import build, install
 
 from mmrs_core.generation.wheels import wheel_of
+from mmrs_core.plugins import load_plugins
 
 ROOT = Path(__file__).parents[2]
 PROJECTS = (
@@ -33,6 +34,7 @@ print(json.dumps({
     "examples": sorted(folder.name for folder in shipped("examples").iterdir() if folder.is_dir()),
     "importers": [importer.name for importer in contributions.languages.importers],
     "templates": sorted(str(target.templates) for target in contributions.targets.values()),
+    "types": {key: str(each.file) for key, each in contributions.robot_types.items() if each.file.is_file()},
     "missing": [str(t.templates) for t in contributions.targets.values() if not t.templates.is_dir()],
 }))
 """
@@ -67,6 +69,8 @@ def test_wheels_find_their_metamodels_templates_and_examples(site, tmp_path):
     assert found["templates"]
     assert all(Path(folder).is_relative_to(site) for folder in found["templates"])
     assert found["missing"] == []
+    assert set(found["types"]) == set(load_plugins().contributions.robot_types)
+    assert all(Path(file).is_relative_to(site) for file in found["types"].values())
 
 
 def test_wheels_carry_the_licence_and_name_it(site):

@@ -2,6 +2,8 @@
 
 import os
 import pty
+import signal
+import subprocess
 import sys
 from itertools import combinations, cycle
 from pathlib import Path
@@ -128,7 +130,7 @@ def test_an_empty_project_says_what_goes_where(mmrs, tmp_path):
             2,
             "refers to elements of the context",
         ),
-        ((*PLACE, "--robot", "A=BlueROV2", "--task", "YoYoTask:pitsch=3"), 2, "pitsch"),
+        ((*PLACE, "--robot", "A=BlueROV2", "--task", "YoYoTask:pitsch=3"), 2, "YoYoTask: pitsch"),
         ((*PLACE, "--robots", "99xBlueROV2", "--task", "GoToTask"), 2, "1 to 20 robots"),
         (("--at", "1e300, 3", "--robot", "A=BlueROV2", "--task", "GoToTask"), 2, "not a position"),
         (("--at", "90, 0", "--robot", "A=BlueROV2", "--task", "GoToTask"), 2, "go to 85 degrees"),
@@ -171,6 +173,27 @@ def test_a_disk_that_is_full_leaves_no_project(mmrs, tmp_path, monkeypatch):
     code, _, err = mmrs("new", tmp_path / "field", "--empty")
     assert code == 3
     assert "no space left" in err
+    assert not (tmp_path / "field").exists()
+
+
+@pytest.mark.parametrize("written", [0, 1, 2])
+def test_a_killed_command_leaves_no_part_of_a_project(tmp_path, written):
+    program = f"""
+import os, signal, sys
+from mmrs_core.cli import replacing
+from mmrs_core.cli import main
+whole, left = replacing.part_of, [{written}]
+def part_of(file, text):
+    if not left[0]:
+        os.kill(os.getpid(), signal.SIGKILL)
+    left[0] -= 1
+    return whole(file, text)
+replacing.part_of = part_of
+main()
+"""
+    options = ("new", "field", *PLACE, "--robot", "A=BlueROV2", "--task", "GoToTask")
+    found = subprocess.run([sys.executable, "-c", program, *options], cwd=tmp_path, check=False)
+    assert found.returncode == -signal.SIGKILL
     assert not (tmp_path / "field").exists()
 
 
