@@ -161,7 +161,7 @@ class _Walk:
             self._upright(step)
         else:
             charging = self.kinematics.charging_time(step.end - step.begin)
-            self._stay(charging.shortest, charging.longest)
+            self._stay(charging.expected, charging.longest)
 
     def _upright(self, step: Launch | Recover) -> None:
         column = self.here, (step.at[0], step.at[1], step.up)
