@@ -1,7 +1,7 @@
 """Shortest paths in the plane around grown areas, by lines of sight that are looked for where needed only.
 
 A shortest path turns at corners that stick out, and touches the area there: with the area to its left
-it can only go on between the directions of the two sides (Rohnert 1986: tangents are enough). So a node
+it can only continue between the directions of the two sides (Rohnert 1986: tangents are enough). So a node
 is a corner and the side on which the area is, and from it only a narrow wedge is looked into: cell by
 cell of a grid, outwards, until all of it is blocked (Hechenberger et al. 2020 scan rays likewise). What
 was seen is kept for later paths. A* over these nodes is exact.
@@ -177,7 +177,7 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
     Args:
         c: the areas.
         memory: of which areas block.
-        x, y: the place.
+        x, y: where that is.
         node: which node that is; -1: none, all directions are looked into.
         spare: metres to keep on top of clearances.
     """
