@@ -1,29 +1,33 @@
-"""Loops over columns of numbers: compiled where numba is installed (extra `fast`), the same in any case."""
+"""Loops over columns of numbers: compiled where that is worth it and numba is installed (extra `fast`).
+
+Results are the same as without it. Such loops stand in modules of their own, `sight` and `box_pairs`, as
+plain functions that call each other.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import cache
 from importlib import import_module
-from typing import Any, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
-
-_njit: Callable[..., Any] | None
-try:
-    _njit = import_module("numba").njit
-except ImportError:
-    _njit = None
-
-Loop = TypeVar("Loop", bound=Callable[..., object])
+from importlib.util import find_spec
+from types import FunctionType, ModuleType, SimpleNamespace
+from typing import Any
 
 
-def compiled(loop: Loop) -> Loop:
-    """Return a loop, compiled when it is first called and kept on disk, or as it is."""
-    made: Loop = _njit(cache=True)(loop) if _njit else loop
-    return made
+def can_compile() -> bool:
+    """Return whether numba is installed; to ask does not import it."""
+    return find_spec("numba") is not None
 
 
-def column(values: NDArray[Any]) -> Any:
-    """Return values as loops read and write them fastest: an array, or a list where they are not compiled."""
-    return np.ascontiguousarray(values) if _njit else values.tolist()
+@cache
+def compiled(module: ModuleType) -> Any:
+    """Return the functions of a module as attributes: compiled when they are first called, kept on disk.
+
+    The module itself keeps its own ones. The first call in an environment takes some ten seconds, the
+    import of numba half a second.
+    """
+    njit: Any = import_module("numba").njit
+    names = dict(vars(module))
+    for name, loop in vars(module).items():
+        if isinstance(loop, FunctionType) and loop.__module__ == module.__name__:
+            names[name] = njit(cache=True)(FunctionType(loop.__code__, names, name, loop.__defaults__))
+    return SimpleNamespace(**{name: names[name] for name in vars(module)})

@@ -6,7 +6,7 @@ is a corner and the side on which the area is, and from it only a narrow wedge i
 cell of a grid, outwards, until all of it is blocked (Hechenberger et al. 2020 scan rays likewise). What
 was seen is kept for later paths. A* over these nodes is exact.
 
-These are loops over columns of numbers: compiled where numba is installed, and run as they are where not.
+These are loops over columns of numbers, to be run as they are or compiled, see `compilation`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from collections.abc import MutableSequence, Sequence
 from heapq import heappop, heappush
 from math import asin, atan2, inf, pi, sqrt
 from typing import NamedTuple
-
-from mmrs_core.planning.compilation import compiled
 
 LEFT, RIGHT = 0, 1
 """Side on which a corner's area is; corner k with its area there is node 2 k + side."""
@@ -91,7 +89,6 @@ class Memory(NamedTuple):
     met: MutableSequence[int]
 
 
-@compiled
 def search(
     c: Columns,
     memory: Memory,
@@ -167,7 +164,6 @@ def search(
     return NONE
 
 
-@compiled
 def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: float) -> list[tuple[int, float]]:
     """Return the nodes seen from a place, and their distances.
 
@@ -235,13 +231,11 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
     return found
 
 
-@compiled
 def _angle(x: float, y: float, to_x: float, to_y: float) -> float:
     """Return the angle from one direction to another, radians to the left."""
     return atan2(x * to_y - y * to_x, x * to_x + y * to_y)
 
 
-@compiled
 def _hidden(
     blocked: Sequence[float],
     around: bool,
@@ -267,7 +261,6 @@ def _hidden(
     return i > last
 
 
-@compiled
 def _meet(
     c: Columns,
     area: int,
@@ -325,7 +318,6 @@ def _meet(
         blocked[i % bins] = min(blocked[i % bins], furthest)
 
 
-@compiled
 def _clear(c: Columns, memory: Memory, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
     """Return whether no area that blocks lies across a line."""
     for area in range(len(memory.blocks)):
@@ -334,7 +326,6 @@ def _clear(c: Columns, memory: Memory, x: float, y: float, to_x: float, to_y: fl
     return True
 
 
-@compiled
 def _crosses(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
     """Return whether a line meets an area's smaller shape.
 
@@ -376,7 +367,6 @@ def _crosses(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float
     return meets
 
 
-@compiled
 def _too_near(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
     """Return whether a line is nearer to an area as drawn than the clearance, and nearer than its ends."""
     at_ends = nearest = inf
@@ -397,7 +387,6 @@ def _too_near(c: Columns, area: int, x: float, y: float, to_x: float, to_y: floa
     return inside or min(at_ends, nearest) < needed - _TINY
 
 
-@compiled
 def _distance(x: float, y: float, x1: float, y1: float, x2: float, y2: float) -> float:
     """Return the distance of a place from a line between two others."""
     along_x, along_y = x2 - x1, y2 - y1

@@ -8,11 +8,13 @@ them is on average, so that there are O(n) boxes and entries.
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mmrs_core.planning import box_pairs
+from mmrs_core.planning.compilation import can_compile, compiled
 
 Floats: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
@@ -42,12 +44,8 @@ def overlapping(
     lasting = np.minimum(times[:, 1], until) - np.maximum(times[:, 0], since)
     slot = max(float(lasting.mean()), (until - since) / 1e6, 1e-6)
     last_slot = int((until - since) // slot)
-    if len(owners) >= _MANY and find_spec("numba") is not None:
-        from mmrs_core.planning.compiled import overlapping_codes
-
-        codes = overlapping_codes(owners, times, least, places, reach, moved, since, slot, last_slot)
-    else:
-        codes = _codes(owners, times, least, places, reach, moved, since, slot, last_slot)
+    codes_of = compiled(box_pairs).overlapping_codes if len(owners) >= _MANY and can_compile() else _codes
+    codes = codes_of(owners, times, least, places, reach, moved, since, slot, last_slot)
     first, second = np.divmod(np.unique(codes), len(owners))
     return first, second
 

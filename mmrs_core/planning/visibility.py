@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from mmrs_core.geometry.clearance import EPSILON
-from mmrs_core.planning.compilation import column
+from mmrs_core.planning import sight
+from mmrs_core.planning.compilation import can_compile, compiled
 from mmrs_core.planning.obstacles import Flags, Floats, Obstacles, outlines_of
-from mmrs_core.planning.sight import FULL, NONE, START, UNKNOWN, Columns, Memory, search
+from mmrs_core.planning.sight import FULL, NONE, START, UNKNOWN, Columns, Memory
 
 Place: TypeAlias = tuple[float, float]
+
+_MANY = 50
+"""Areas from which on compiled loops are worth their import, where they are installed."""
 
 _SETS = 32
 """Sets of areas at most for which is kept what was seen."""
@@ -25,6 +30,7 @@ class Visibility:
 
     def __init__(self, obstacles: Obstacles) -> None:
         self._obstacles = obstacles
+        self._compiled = len(obstacles) >= _MANY and can_compile()
         self._columns: Columns | None = None
         self._memories: dict[bytes, Memory] = {}
         self._rows: dict[tuple[Place, int], Flags] = {}
@@ -42,13 +48,14 @@ class Visibility:
             longest: metres beyond which a path is of no use.
         """
         if self._columns is None:
-            self._columns = columns_of(self._obstacles)
+            self._columns = columns_of(self._obstacles, self._column)
         columns, nodes = self._columns, 2 * len(self._columns.x)
         memory = self._memory(blocks, nodes)
+        search, column = compiled(sight).search if self._compiled else sight.search, self._column
         best, came = column(np.full(nodes + 1, inf)), column(np.full(nodes + 1, START))
         metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, best, came)
         while metres == FULL:
-            memory = self._memories[blocks.tobytes()] = _enlarged(memory)
+            memory = self._memories[blocks.tobytes()] = self._enlarged(memory)
             best, came = column(np.full(nodes + 1, inf)), column(np.full(nodes + 1, START))
             metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, best, came)
         if metres == NONE:
@@ -65,6 +72,7 @@ class Visibility:
         if memory is None:
             if len(self._memories) == _SETS:
                 del self._memories[next(iter(self._memories))]
+            column = self._column
             memory = self._memories[key] = Memory(
                 column(blocks),
                 column(np.zeros(nodes, np.int64)),
@@ -75,6 +83,18 @@ class Visibility:
                 column(np.zeros(len(blocks) + 1, np.int64)),
             )
         return memory
+
+    def _enlarged(self, memory: Memory) -> Memory:
+        """Return the same memory with room for twice as much."""
+        node, metres = np.asarray(memory.node), np.asarray(memory.metres)
+        return memory._replace(
+            node=self._column(np.concatenate([node, node])),
+            metres=self._column(np.concatenate([metres, metres])),
+        )
+
+    def _column(self, values: NDArray[Any]) -> Any:
+        """Return values as loops read and write them fastest: an array, or a list where not compiled."""
+        return np.ascontiguousarray(values) if self._compiled else values.tolist()
 
     def to_corners(self, place: Place, area: int) -> Flags:
         """Return (corners of the area, areas): what lies between a place and each corner."""
@@ -93,8 +113,8 @@ class Visibility:
         return flags
 
 
-def columns_of(obstacles: Obstacles) -> Columns:
-    """Return grown areas as columns, and a grid of about as many cells over them."""
+def columns_of(obstacles: Obstacles, column: Callable[[NDArray[Any]], Any]) -> Columns:
+    """Return grown areas as columns, each made by `column`, and a grid of about as many cells over them."""
     count = len(obstacles)
     corners, before, after, of = obstacles.corners()
     edges, walls = outlines_of(obstacles.smaller), outlines_of(obstacles.drawn)
@@ -133,11 +153,3 @@ def _in_cells(spans: Floats, columns: int, rows: int) -> tuple[NDArray[np.intp],
     cell = (first[area, 1] + index // wide[area]) * columns + first[area, 0] + index % wide[area]
     order = np.argsort(cell, kind="stable")
     return _slices(cell[order], columns * rows), area[order]
-
-
-def _enlarged(memory: Memory) -> Memory:
-    """Return the same memory with room for twice as much."""
-    node, metres = np.asarray(memory.node), np.asarray(memory.metres)
-    return memory._replace(
-        node=column(np.concatenate([node, node])), metres=column(np.concatenate([metres, metres]))
-    )

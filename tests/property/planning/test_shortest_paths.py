@@ -1,17 +1,15 @@
 """Paths in the plane are as short as those in a full graph of visibility, which shares no code with them."""
 
-import subprocess
-import sys
 from heapq import heappop, heappush
 from itertools import pairwise
 from math import dist, inf
-from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
 
 from mmrs_core.geometry.clearance import EPSILON, grow
+from mmrs_core.planning import visibility
 from mmrs_core.planning.obstacles import Obstacles
 from mmrs_core.planning.visibility import Visibility
 from mmrs_core.scene import Area, AreaUse
@@ -102,23 +100,14 @@ def test_many_paths_are_shortest_and_clear(seed):
     check(seed)
 
 
-PATHS = """
-import sys
-sys.modules["numba"] = None
-from test_shortest_paths import paths_of
-print(paths_of(3))
-"""
-
-
-def paths_of(seed):
-    rings, pairs = scene(seed)
-    areas = [Area(f"area {i}", AreaUse.OBSTACLE, tuple(ring)) for i, ring in enumerate(rings)]
-    visibility = Visibility(Obstacles(areas, CLEARANCE))
-    return [visibility.shortest_path(*pair, np.ones(len(areas), np.bool_)) for pair in pairs]
-
-
-def test_paths_are_the_same_where_nothing_is_compiled():
+def test_paths_are_the_same_where_nothing_is_compiled(monkeypatch):
     pytest.importorskip("numba", reason="loops are compiled with numba (extra fast) only")
-    call = [sys.executable, "-c", PATHS]
-    done = subprocess.run(call, cwd=Path(__file__).parent, capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == str(paths_of(3))
+
+    def paths_with(many):
+        monkeypatch.setattr(visibility, "_MANY", many)
+        rings, pairs = scene(3)
+        areas = [Area(f"area {i}", AreaUse.OBSTACLE, tuple(ring)) for i, ring in enumerate(rings)]
+        found = visibility.Visibility(Obstacles(areas, CLEARANCE))
+        return [found.shortest_path(*pair, np.ones(len(areas), np.bool_)) for pair in pairs]
+
+    assert paths_with(0) == paths_with(10**9)

@@ -1,27 +1,16 @@
-"""Loops that numba compiles, where it is installed (extra `fast`); results are the same without them."""
+"""Which pieces may come near to each other, slot by slot: a loop to be compiled, see `sweep`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import floor, sqrt
-from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
-_Loop = TypeVar("_Loop", bound=Callable[..., Any])
 
 
-def compiled(loop: _Loop) -> _Loop:
-    """Return a function that is compiled when it is first called, and kept on disk."""
-    made: Any = njit(cache=True)(loop)
-    return cast(_Loop, made)
-
-
-@compiled
 def overlapping_codes(
     owners: Indices,
     times: Floats,
