@@ -273,8 +273,13 @@ def _meet(
     blocked: MutableSequence[float],
     seen: list[tuple[int, float]],
 ) -> None:
-    """Add the nodes at which lines from a place touch an area; note which bins it blocks."""
+    """Add the nodes at which lines from a place touch an area; note which bins it blocks.
+
+    An end of a path may lie in the rim between an area's two shapes; from there, lines to any corner count.
+    """
     own, side = node // 2, node % 2
+    inside = c.west[area] <= x <= c.east[area] and c.south[area] <= y <= c.north[area]
+    in_rim = inside and node < 0
     low_x = low_y = high_x = high_y = furthest = 0.0
     for k in range(c.corners_from[area], c.corners_from[area + 1]):
         to_x, to_y = c.x[k] - x, c.y[k] - y
@@ -286,7 +291,8 @@ def _meet(
             high_x, high_y = to_x, to_y
         one = to_x * c.before_y[k] - to_y * c.before_x[k]
         two = to_x * c.after_y[k] - to_y * c.after_x[k]
-        if squared <= 1e-18 or (one * two < 0.0 and min(abs(one), abs(two)) > _TINY * sqrt(squared)):
+        apart = one * two < 0.0 and min(abs(one), abs(two)) > _TINY * sqrt(squared)
+        if squared <= 1e-18 or (apart and not in_rim):
             continue
         metres = sqrt(squared)
         tiny = _TINY * metres
@@ -299,11 +305,11 @@ def _meet(
                 continue
             if side == RIGHT and max(from_one, from_two) > tiny:
                 continue
-        if min(one, two) >= -tiny:
+        if in_rim or min(one, two) >= -tiny:
             seen.append((2 * k + LEFT, metres))
-        if max(one, two) <= tiny:
+        if in_rim or max(one, two) <= tiny:
             seen.append((2 * k + RIGHT, metres))
-    if c.west[area] <= x <= c.east[area] and c.south[area] <= y <= c.north[area]:
+    if inside:
         return
     furthest = sqrt(furthest)
     low = _angle(base_x, base_y, low_x, low_y)

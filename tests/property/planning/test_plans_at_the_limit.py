@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import cos, inf, sin
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from plain_scenes import DRONE, box, road, robot, scene
 
@@ -57,6 +57,7 @@ def verdicts_of(whole, kinematics):
     far=st.floats(60.0, 3000.0),
     over=st.booleans(),
 )
+@example(origin="local", half=1.0, error=1.0, safety=1.0, top=1.0, turn=4.0, far=60.0, over=False)
 def test_a_stroke_at_the_limit_is_planned_and_safe(origin, half, error, safety, top, turn, far, over):
     """It is as near as may be to an obstacle, to the ceiling, and to the end of the radio's reach."""
     keep = safety + half + error

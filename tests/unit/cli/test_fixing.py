@@ -67,14 +67,14 @@ def test_all_files_are_as_they_were_if_one_cannot_be_written(tmp_path, monkeypat
     repair = repair_of(one, other)
     from mmrs_core.cli import replacing
 
-    replace_file = replacing.replace_file
+    part_of = replacing.part_of
 
     def full(file, text):
         if file == other:
             raise OSError(28, "no space left on device", str(file))
-        replace_file(file, text)
+        return part_of(file, text)
 
-    monkeypatch.setattr(replacing, "replace_file", full)
+    monkeypatch.setattr(replacing, "part_of", full)
     with pytest.raises(OSError, match="no space left"):
         write(repair)
     assert (one.read_bytes(), other.read_bytes()) == (b"a", b"b")

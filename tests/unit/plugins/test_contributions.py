@@ -41,19 +41,25 @@ def test_the_models_in_a_readme_conform_to_the_languages(plugins, name):
 
     languages = plugins.contributions.languages
     readme = (ROOT / "plugins" / name / "README.md").read_text(encoding="utf-8")
-    (model,) = re.findall(r"```xml\n(.*?)```", readme, re.DOTALL)
-    if not model.startswith("<?xml"):
-        model = _in_a_mission(model)
-    found = read_text(model.encode(), "README.md", languages)
-    assert (*found.diagnostics, *check_conformance(found, languages)) == ()
+    models = re.findall(r"```xml\n(.*?)```", readme, re.DOTALL)
+    assert models
+    for model in models:
+        whole = model if model.startswith("<?xml") else _in_a_model(model)
+        found = read_text(whole.encode(), "README.md", languages)
+        assert (*found.diagnostics, *check_conformance(found, languages)) == ()
 
 
-def _in_a_mission(task):
+def _in_a_model(part):
     prefixes = " ".join(f'xmlns:{name}="urn:mmrs:{name}:1.0"' for name in ("mission", "survey"))
     xsi = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+    if part.startswith("<devices"):
+        size = '<size width="1.0" length="1.0" height="1.0" weight="1.0"/>'
+        robot = f'<robot:Robot xmlns:robot="urn:mmrs:robot:1.0" {xsi} name="t">'
+        speed = '<movementCapabilities><speed min="0.0" max="1.0"/></movementCapabilities>'
+        return f"{robot}{size}{part}{speed}</robot:Robot>"
     home = '<home xsi:type="mission:RelativeCoordinate" x="0.0" y="0.0"/>'
     team = f'<team><robots name="a" type="t">{home}</robots></team>'
-    return f"<mission:Mission {prefixes} {xsi}>{team}{task}</mission:Mission>"
+    return f"<mission:Mission {prefixes} {xsi}>{team}{part}</mission:Mission>"
 
 
 @pytest.mark.parametrize("name", NAMES)
