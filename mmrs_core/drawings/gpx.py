@@ -27,7 +27,7 @@ AXES = "GPX names them lat and lon"
 AREA = f"{PREFIX}area"
 """Marks a track whose segments are the rings of an area."""
 POINT = ("@lat", "@lon", "ele", "time")
-KINDS = {"wpt": Role.UNKNOWN, "rte": Role.PATH, "trk": Role.TRACK}
+KINDS = {"wpt": Role.UNKNOWN, "rte": Role.UNKNOWN, "trk": Role.TRACK}
 TEXTS = ("cmt", "src", "type", "sym", "number", "geoidheight", "fix", "sat", "hdop", "vdop", "pdop")
 READ = ("name", "desc", "ele", "time", "trkseg", "link", "url", "urlname", "magvar")
 ROOT = ("metadata", "name", "desc", "author", "email", "url", "urlname", "time", "keywords", "bounds")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,9 @@ Position = tuple[float | None, float | None]
 
 LONGEST_NAME = 80
 _SHUT = ("forbiddenAreas", "obstacles")
+_ROUNDED = 1e-3
+"""Metres by which heights that are the same may differ, as files round them."""
+
 RALLY_RADIUS = 10.0
 """Metres around a point that is to be an emergency area, of which clearances leave something."""
 
@@ -160,17 +164,41 @@ class Builder:
             # one drawing may have a shape twice, for different tasks
             twice = other not in self.comments or called == feature.name
             if metaclass_of(other) is kind.metaclass and twice:
-                return replace(told, reason=f"the same is there already: {called}")
+                reason = self._already(feature, kind, element, _stated(element, given, found), other)
+                return replace(told, reason=reason)
             notes.append(f"drawn as {called} is, too")
         alike.append(element)
         wanted = given.get("name")
         label = kind.symbol.label if kind.symbol is not None else kind.name
         name = self._names.unique(wanted if isinstance(wanted, str) else feature.name, label)
         element.name = name  # type: ignore[attr-defined]  # tasks and what is in a context have one
-        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in missing(element, kind)))
+        who = f"{feature.place}: {feature.name[:LONGEST_NAME]!r}"
+        self.faults.update(dict.fromkeys(f"{who}: {fault}" for fault in missing(element, kind)))
         self.comments[element] = comment_of(feature)
         path = self._append(element, kind, found.rings[0])
         return replace(told, became=kind.name, called=name, notes=tuple(notes), path=path)
+
+    def _already(
+        self, feature: MapFeature, kind: Kind, element: Element, stated: Mapping[str, object], other: Element
+    ) -> str:
+        """Return that an element is there already, and what differs; a fault if the drawn one is higher."""
+        called = label_of(other) or "an element without a name"
+        there = {name: getattr(other, name, None) for name in stated}
+        different = [
+            f"{name} {there[name]} instead of {value}"
+            for name, value in stated.items()
+            if not _alike(there[name], value)
+        ]
+        heights = [[number(at, "altitude") or 0.0 for at in _coordinates(each)] for each in (element, other)]
+        if any(heights[0]) and not all(map(_alike, *heights)):
+            different.append("other heights")
+        if not different:
+            return f"the same is there already: {called}"
+        reason = f"its shape is there already: {called}, with {', '.join(different)}; change it there"
+        top, drawn = there.get("maxHeight"), stated.get("maxHeight")
+        if isinstance(top, float) and isinstance(drawn, float) and drawn > top:
+            self.refuse_open(kind, feature.place, repr(feature.name[:LONGEST_NAME]), reason, feature.name)
+        return reason
 
     def refuse_open(self, kind: Kind, place: Place, what: str, reason: str, name: str) -> None:
         """Note the fault of something to keep clear of that robots would enter, since it is left out."""
@@ -236,7 +264,10 @@ class Builder:
         drawn = shape_of(feature)
         if not kind.surrounds or feature.geometry is Geometry.AREA:
             found = shape(
-                feature, drawn if drawn in kind.shapes else feature.geometry, self._around.tolerance
+                feature,
+                drawn if drawn in kind.shapes else feature.geometry,
+                self._around.tolerance,
+                covering=kind.feature in _SHUT,
             )
             if kind.surrounds and len(found.rings) > 1:
                 if kind.feature == "emergencyAreas":
@@ -275,6 +306,7 @@ class Builder:
             usual: whether it has the usual height where it has none.
         """
         ups = self._settled(found, notes)
+        usual = usual or (ups is None and found.heights is not None and bool(found.heights.any()))
         if kind.feature == "obstacles":
             if ups is not None and "maxHeight" not in given:
                 element.maxHeight = round(float(ups.max()), 3)  # type: ignore[attr-defined]  # obstacles have one
@@ -372,6 +404,23 @@ def _transformer(crs: str) -> Transformer:
     from pyproj import Transformer
 
     return Transformer.from_crs("EPSG:4326", crs, always_xy=True)
+
+
+def _stated(element: Element, given: Mapping[str, object], found: DrawnShape) -> dict[str, object]:
+    """Return the attributes of a new element that its drawing or the user states."""
+    metaclass = metaclass_of(element)
+    names = {name for name, value in given.items() if value is not None and name != "name"}
+    if found.heights is not None:
+        names |= {"maxHeight", "altitude"} & metaclass.by_name.keys()
+    stated = {metaclass.feature(name).attribute: None for name in sorted(names)}
+    values = {name: getattr(element, name) for name in stated}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _alike(one: object, two: object) -> bool:
+    if isinstance(one, float) and isinstance(two, float):
+        return isclose(one, two, abs_tol=_ROUNDED)
+    return str(one) == str(two)
 
 
 def _drawn(element: Element) -> bool:

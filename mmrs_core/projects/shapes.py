@@ -47,11 +47,14 @@ class DrawnShape:
     notes: tuple[str, ...] = ()
 
 
-def shape(feature: MapFeature, geometry: Geometry, tolerance: float | None) -> DrawnShape:
+def shape(
+    feature: MapFeature, geometry: Geometry, tolerance: float | None, *, covering: bool = False
+) -> DrawnShape:
     """Return the positions of a feature as that geometry: its own, or the circle of a point with a radius.
 
     Args:
         tolerance: metres by which a simplified border may be off; None: it is not simplified.
+        covering: whether a simplified area must hold all of what was drawn.
 
     Raises:
         UnfitError: if a position is not on the Earth, too few are left, or there are too many.
@@ -92,6 +95,10 @@ def shape(feature: MapFeature, geometry: Geometry, tolerance: float | None) -> D
         rings.append(ring[indices])
         kept.append(indices)
     heights = feature.heights[0][kept[0]] if feature.heights else None
+    if covering and tolerance and geometry is Geometry.AREA and len(kept[0]) < len(feature.rings[0]):
+        rings[0] = _grown(rings[0], tolerance)
+        heights = None if heights is None else heights.max().repeat(len(rings[0]))
+        notes.append(f"then grown by {tolerance:g} m, so that it holds all that was drawn")
     return DrawnShape(geometry, tuple(rings), heights, feature.reference, tuple(notes))
 
 
@@ -112,6 +119,12 @@ def around(feature: MapFeature, radius: float, *, covering: bool) -> Floats:
     reach = radius / cos(pi / (4 * _QUARTER)) if covering else radius
     outside = shapely.get_exterior_ring(shapely.buffer(centre, reach, quad_segs=_QUARTER))
     return frame.to_geographic(shapely.get_coordinates(outside)[:-1])
+
+
+def _grown(ring: Floats, metres: float) -> Floats:
+    frame = LocalFrame(WGS84, *map(float, ring[0]))
+    grown = shapely.buffer(shapely.Polygon(frame.to_local(*ring.T)), metres, join_style="mitre")
+    return frame.to_geographic(shapely.get_coordinates(shapely.get_exterior_ring(grown))[:-1])
 
 
 def begin_of(ring: Floats, home: Floats | None, closed: Sequence[Floats]) -> int:

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.drawings.drawing import LeftOut, MapFeature, Property, Role
+from mmrs_core.drawings.drawing import HeightReference, LeftOut, MapFeature, Property, Role
 from mmrs_core.pictures.layers.chart import Chart, Drawn, Shape
 from mmrs_core.pictures.layers.layer import Layer
 from mmrs_core.pictures.palette import COLOURS, style_of
@@ -75,8 +75,9 @@ def homes_on(chart: Chart, robots: Iterable[tuple[str, str, Position | None]]) -
     """Yield the homes of robots that have one, given by their name, their type's name and their home."""
     for index, (robot, type_name, home) in enumerate(robots):
         if home is not None:
+            high = chart.reference is not HeightReference.HOME
             yield replace(
-                chart.line(_raised([home[:2]], {home[:2]: home[2]})),
+                chart.line([home] if high else _raised([home[:2]], {home[:2]: home[2]})),
                 name=robot,
                 role=Role.HOME,
                 folders=(Layer.HOMES,),

@@ -20,7 +20,7 @@ def test_waypoints_routes_and_segments_of_tracks_become_features():
     assert drawing.title == "walk"
     assert (gate.geometry, gate.name, gate.properties) == (Geometry.POINT, "gate", {"sym": "Flag"})
     assert (gate.reference, gate.heights[0].tolist()) == (HeightReference.SEA_LEVEL, [400])
-    assert [each.role for each in drawing.features] == [Role.UNKNOWN, Role.PATH, Role.TRACK, Role.TRACK]
+    assert [each.role for each in drawing.features] == [Role.UNKNOWN, Role.UNKNOWN, Role.TRACK, Role.TRACK]
     assert route.rings[0].tolist() == [[47, 8], [47, 8.1]]
     assert first.times.tolist() == [1577836800, 1577836801]
     assert (second.times, second.heights, second.place.line) == (None, (), 4)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 
 from mmrs_core.diagnostics import Place, has_errors
 from mmrs_core.drawings.drawing import Geometry, HeightReference, LeftOut, MapFeature, Role
@@ -12,7 +13,7 @@ from mmrs_core.errors import UnreadableError, UsageError
 from mmrs_core.pipeline import expand, ground, plan, read_models, valid_models
 from mmrs_core.plugins import load_plugins
 from mmrs_core.projects.choosing import assignment_of, read_mapping
-from mmrs_core.projects.importing import ImportOptions, imported
+from mmrs_core.projects.importing import ImportOptions, ImportRefusedError, imported
 from mmrs_core.projects.team import robot_wanted, types_for
 
 CONTRIBUTIONS = load_plugins().contributions
@@ -408,6 +409,36 @@ def test_an_area_is_the_same_from_any_corner_and_either_way_round_but_a_line_is_
     reasons = {each.name: each.reason for each in outcomes}
     same = "the same is there already: pit"
     assert reasons == {"turned": same, "begun elsewhere": same, "crossed": "", "Track back": ""}
+
+
+def test_what_differs_from_the_same_shape_in_a_project_is_reported_and_a_higher_obstacle_is_a_fault(tmp_path):
+    def features(mast, field, lane):
+        road = drawn("lane", (20, 0), (20, 40), heights=[lane, lane])
+        return square("obstacle", heights=[mast] * 4), square("field", 200, heights=[field] * 4), road
+
+    saved(made(*features(20.0, 40.0, 20.0), folder=tmp_path))
+    again = replace(OPTIONS, robots=())
+    result = imported(features(15.0, 70.0, 60.0), (), again, CONTRIBUTIONS, tmp_path, into=True)
+    assert [each.reason for each in result.outcomes] == [
+        "its shape is there already: obstacle, with maxHeight 20.0 instead of 15.0; change it there",
+        "its shape is there already: field, with altitude 40.0 instead of 70.0; change it there",
+        "its shape is there already: lane, with other heights; change it there",
+    ]
+    assert not result.files
+    with pytest.raises(ImportRefusedError) as refused:
+        imported(features(60.0, 40.0, 20.0), (), again, CONTRIBUTIONS, tmp_path, into=True)
+    assert "maxHeight 20.0 instead of 60.0" in str(refused.value.elements)
+
+
+@pytest.mark.parametrize("tolerance", [3.0, 10.0])
+def test_a_simplified_obstacle_holds_all_that_was_drawn(tmp_path, tolerance):
+    corners = [(60, 60), (110, 60), (112, 85), (110, 110), (60, 110), (57, 80)]
+    options = replace(OPTIONS, simplify=tolerance)
+    result = made(drawn("obstacle", *corners), square("field", 200), options=options, folder=tmp_path)
+    (pit,) = models_of(result, tmp_path).context.obstacles
+    ring = [(each.latitude, each.longitude) for each in pit.shell]
+    assert len(ring) < len(corners) + 1
+    assert shapely.Polygon(ring).covers(shapely.Polygon([at(*each) for each in corners]))
 
 
 def test_heights_that_a_mission_cannot_state_are_its_tasks_own_or_left_out(tmp_path):

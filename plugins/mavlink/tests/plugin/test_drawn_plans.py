@@ -245,3 +245,19 @@ def test_of_any_bytes_a_drawing_comes_or_a_clear_error(data, begin):
     for read in (read_list, read_plan):
         with suppress(UnreadableError):
             read(begin + data, "a")
+
+
+@pytest.mark.parametrize(
+    ("calc", "reference", "altitude"),
+    [
+        ({"DistanceToSurface": 60, "DistanceMode": 2}, HeightReference.SEA_LEVEL, None),
+        ({"DistanceToSurface": 60, "DistanceToSurfaceRelative": False}, HeightReference.SEA_LEVEL, None),
+        ({"DistanceToSurface": 60, "DistanceMode": 1}, HeightReference.NONE, 60.0),
+        ({"DistanceToSurface": 60, "DistanceToSurfaceRelative": True}, HeightReference.NONE, 60.0),
+    ],
+)
+def test_a_survey_above_mean_sea_level_has_heights_instead_of_an_altitude(calc, reference, altitude):
+    data = plan(survey("survey", polygon=FIELD, TransectStyleComplexItem={"CameraCalc": calc}))
+    field = read_plan(data, "a").features[-1]
+    assert (field.reference, field.properties.get("altitude")) == (reference, altitude)
+    assert [ring.tolist() for ring in field.heights] == ([[60.0] * len(FIELD)] if altitude is None else [])

@@ -92,15 +92,13 @@ def test_what_has_no_shape_of_its_own_is_a_property(attributes, expected):
     assert properties_of(part(**attributes)) == {"type": "Buoy", **expected}
 
 
-def test_homes_lie_on_the_ground_unless_they_have_a_height():
-    low, high = homes_on(
-        CHART, [("a", "Quad", (1.0, 2.0, 0.0)), ("b", "Quad", (1.0, 2.0, 4.0)), ("c", "Quad", None)]
-    )
-    assert (low.heights, high.heights[0].tolist(), high.properties) == (
-        (),
-        [104.0],
-        {"robot": "b", "type": "Quad"},
-    )
+def test_homes_have_heights_unless_they_lie_on_the_ground_at_an_origin_of_unknown_height():
+    homes = [("a", "Quad", (1.0, 2.0, 0.0)), ("b", "Quad", (1.0, 2.0, 4.0)), ("c", "Quad", None)]
+    low, high = homes_on(CHART, homes)
+    assert (low.heights[0].tolist(), high.heights[0].tolist()) == ([100.0], [104.0])
+    assert high.properties == {"robot": "b", "type": "Quad"}
+    low, high = homes_on(replace(CHART, reference=HeightReference.HOME, zero=0.0), homes)
+    assert (low.heights, high.heights[0].tolist()) == ((), [4.0])
 
 
 def test_every_robot_has_its_rally_points(scene, behaviour, types):

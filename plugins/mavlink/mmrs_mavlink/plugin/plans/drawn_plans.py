@@ -55,6 +55,8 @@ SETTINGS = {
     "CorridorWidth": ("width", 1.0),
 }
 """The attribute that a setting is, and what it is multiplied by."""
+ABOVE_SEA = 2
+"""``DistanceMode`` of a height above mean sea level; 1 is above home, 3 and 4 are above the ground."""
 COMPLEX = {
     "survey": (Geometry.AREA, Role.SURVEY, "polygon"),
     "CorridorScan": (Geometry.LINE, Role.CORRIDOR, "polyline"),
@@ -170,7 +172,11 @@ class _PlanReader:
                 properties = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
                 properties |= _attributes(properties)
                 ring, what = self._list(item, key), f"{complex_role.value} {number}"
-                self._add(geometry, [ring], what, item.line, complex_role, properties=properties)
+                reference = HeightReference.NONE
+                if _above_sea(properties) and "altitude" in properties:
+                    reference, height = HeightReference.SEA_LEVEL, properties.pop("altitude")
+                    ring = [[*each[:2], height] if isinstance(each, list) else each for each in ring]
+                self._add(geometry, [ring], what, item.line, complex_role, reference, properties=properties)
             else:
                 reason = f"'{str(kind or item.get('type'))[:40]}' is not a kind of item that is read"
                 self.sheet.leave_out(f"item {number}", reason, item.line)
@@ -231,6 +237,12 @@ def _attributes(settings: Mapping[str, Property]) -> dict[str, Property]:
     """Return settings of a survey or corridor as attributes of tasks, in SI units and fractions."""
     numbers = {key: value for key in SETTINGS if isinstance(value := settings.get(key), int | float)}
     return {SETTINGS[key][0]: round(value * SETTINGS[key][1], 6) for key, value in numbers.items()}
+
+
+def _above_sea(settings: Mapping[str, Property]) -> bool:
+    """Return whether heights of a survey or corridor are above mean sea level, in newer or older plans."""
+    mode, relative = settings.get("DistanceMode"), settings.get("DistanceToSurfaceRelative")
+    return mode == ABOVE_SEA or (mode is None and relative is False)
 
 
 def _side(fence: Mapping[str, object]) -> Role:
