@@ -44,12 +44,9 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
     found, refusal = None, InfeasibleError("no plan")
     for wanted in ({}, *robot_counts(team, jobs)):
         try:
-            made = _plan_asking(teams, wanted, jobs, seed)
+            found = _plan_asking(teams, wanted, jobs, seed, found)
         except InfeasibleError as error:
             refusal = refusal if wanted else error
-            continue
-        if found is None or _cost(made) < _cost(found):
-            found = made
     if found is None:
         raise refusal
     return found
@@ -60,11 +57,17 @@ def _cost(made: Plan) -> tuple[float, float]:
     return (round(made.makespan, 3), round(sum(each.busy for each in made.robots), 3))
 
 
-def _plan_asking(teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], seed: int) -> Plan:
+def _better(plan: Plan, best: Plan | None) -> Plan:
+    return plan if best is None or _cost(plan) < _cost(best) else best
+
+
+def _plan_asking(
+    teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], seed: int, best: Plan | None
+) -> Plan:
     shortage = InfeasibleError("no plan")
     for each in teams:
         try:
-            return _plan_with(each.wanting(wanted) if wanted else each, jobs, seed)
+            return _plan_with(each.wanting(wanted) if wanted else each, jobs, seed, best)
         except _ShortError as error:
             shortage = InfeasibleError(str(error), error.reasons)
     raise shortage
@@ -81,6 +84,10 @@ class _Remembered:
         for each in self._coming:
             self._made.append(each)
             yield each
+
+
+class _NotBetterError(InfeasibleError):
+    """A plan is no better than one that was found before, even before its robots are kept apart."""
 
 
 class _ShortError(InfeasibleError):
@@ -105,26 +112,38 @@ _DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
 
 
-def _plan_with(team: Team, jobs: Sequence[Job], seed: int) -> Plan:
-    """Return a plan of a team, or of one like it where robots that come too near are kept apart for less."""
-    best: Plan | None = None
+def _plan_with(team: Team, jobs: Sequence[Job], seed: int, best: Plan | None) -> Plan:
+    """Return a plan of a team, or of one like it where robots that come too near are kept apart for less.
+
+    It is the best so far if that is better.
+
+    Args:
+        team: as it is.
+        jobs: of the scene.
+        seed: of the local search.
+        best: the best so far.
+
+    Raises:
+        InfeasibleError: no plan was found, or no better one is to be expected.
+    """
     refusal: TooNearError | None = None
     try:
-        found, best = _plan_of(team, jobs, seed)
-        if best.makespan <= _DEAR * found.makespan:
+        found, made = _plan_of(team, jobs, seed, best)
+        best = _better(made, best)
+        if made.makespan <= _DEAR * found.makespan:
             return best
     except TooNearError as error:
         refusal = error
     for other, in_turns in _alternatives(team, refusal):
         try:
-            _, made = _plan_of(other, jobs, seed, in_turns=in_turns)
+            _, made = _plan_of(other, jobs, seed, best, in_turns=in_turns)
+        except _NotBetterError:
+            break
         except InfeasibleError:
             continue
-        made = replace(made, notes=(*_unasked_returns(team, other, made), *made.notes))
+        best = _better(replace(made, notes=(*_unasked_returns(team, other, made), *made.notes)), best)
         if refusal is not None:
-            return made
-        if best is None or _cost(made) < _cost(best):
-            best = made
+            break
     if best is None:
         raise InfeasibleError(str(refusal), refusal.reasons if refusal else ()) from refusal
     return best
@@ -162,8 +181,10 @@ def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team
     yield Team(team.scene, fine=team.fine, homebound=everyone, from_homes=least), True
 
 
-def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False) -> tuple[Plan, Plan]:
-    """Return a plan as it was found, and as its robots keep apart."""
+def _plan_of(
+    team: Team, jobs: Sequence[Job], seed: int, best: Plan | None, *, in_turns: bool = False
+) -> tuple[Plan, Plan]:
+    """Return a plan as it was found, and as its robots keep apart; refuse one that is not better."""
     decisions, found = find_decisions(team, jobs, seed, in_turns=in_turns)
     if isinstance(found, Shortfall):
         reasons = _reasons(team, jobs, found)
@@ -173,7 +194,9 @@ def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = Fal
     if isinstance(recorded, Shortfall):
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
     first = assemble(team, jobs, recorded)
-    made = _kept_apart(team, jobs, decisions, first)
+    if _better(first, best) is best:
+        raise _NotBetterError("no better plan")
+    made = _kept_apart(team, jobs, decisions, first, best)
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
     _refuse([reason for reason, _ in broken_times(team, spans)], "no plan keeps all times")
     return first, made
@@ -190,26 +213,32 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
     ]
 
 
-def _kept_apart(team: Team, jobs: Sequence[Job], decisions: Decisions, found: Plan) -> Plan:
-    """Return a plan as its robots keep apart: waiting on their paths or starting later, as costs less."""
+def _kept_apart(
+    team: Team, jobs: Sequence[Job], decisions: Decisions, found: Plan, best: Plan | None
+) -> Plan:
+    """Return a plan as its robots keep apart: waiting on their paths or starting later, as costs less.
+
+    What is no better than the best so far is not sought any further.
+    """
     try:
         waiting = separated(team, found)
-        if waiting.makespan <= _DEAR * found.makespan:
-            return waiting
     except TooNearError as error:
-        later = starting_later(team, decisions, partial(_planned, team, jobs))
+        later = starting_later(team, decisions, partial(_planned_better, team, jobs, best))
         if later is None:
             raise error from None
         return later
-    later = starting_later(team, decisions, partial(_planned, team, jobs))
-    return waiting if later is None else min(waiting, later, key=_cost)
+    if waiting.makespan <= _DEAR * found.makespan:
+        return waiting
+    least = _better(waiting, best)
+    return starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or waiting
 
 
-def _planned(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
+def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:
     found = schedule(team, jobs, decisions, record=True)
     if isinstance(found, Shortfall) or broken_times(team, found.spans):
         return None
-    return assemble(team, jobs, found)
+    made = assemble(team, jobs, found)
+    return None if _better(made, best) is best else made
 
 
 def _refuse(reasons: Sequence[str], what: str) -> None:
