@@ -15,6 +15,9 @@ ROUND_SECONDS, LONGEST_ROUND = 0.6, 5.0
 SHORTEST_PAUSE, LONGEST_PAUSE = 0.005, 1.0
 """Seconds before a sender tries again, growing with each try."""
 
+MOST_TRIES = 10
+"""After so many, pauses and rounds are as long as they get."""
+
 
 class TransactionPhase(Enum):
     """How far a notify is."""
@@ -207,7 +210,7 @@ class Transaction:
         self._settle()
 
     def _pause(self) -> float:
-        self._tries += 1
+        self._tries = min(self._tries + 1, MOST_TRIES)
         longest = min(LONGEST_PAUSE, SHORTEST_PAUSE * 2.0**self._tries)
         return self._chance.uniform(longest / 2, longest)
 
