@@ -37,13 +37,14 @@ from .messages import (
     word_in,
 )
 from .slot import Kept, Latest, Slot, Starts
+from .watching import LEASE_SECONDS
 
 STRANGE = "not a word of this run and plan"
 
 KEPT_SECONDS = 10.0
 """Seconds that a slot is kept for a silent sender; senders repeat requests sooner."""
 
-Lost = Callable[[str, float], bool]
+LostAt = Callable[[str], float | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,7 @@ class Owner:
         journal: Journal,
         *,
         floor: int = 0,
-        lost: Lost | None = None,
+        lost_at: LostAt = lambda sender: None,
         trusting: bool = False,
     ) -> None:
         """Restore from the journal.
@@ -87,7 +88,7 @@ class Owner:
             run: identifier of the run; journals and commands of other runs are refused.
             journal: what survives.
             floor: logical time after which everything happens now.
-            lost: whether a sender has been lost for long enough at a time; None: none ever is.
+            lost_at: when slots are no longer kept for a sender that is out of reach; None: it is not.
             trusting: whether commands come from this process only, so that none is forged.
 
         Raises:
@@ -99,7 +100,7 @@ class Owner:
         self.used = False
         self.finds: dict[str, Find] = {}
         self._owned, self._run, self._journal, self._trusting = owned, run, journal, trusting
-        self._lost = lost or (lambda sender, now: False)
+        self._lost_at = lost_at
         self._slots = {name: Slot(SlotState(lamport=floor)) for name in owned.slots}
         self._kept: set[str] = set()
         self._applied: set[CommandId] = set()
@@ -242,16 +243,14 @@ class Owner:
             self._end_if_lost(self._slots[name], now)
         return before != self.kept()
 
-    def next_end(self, lost_at: Callable[[str], float | None]) -> float | None:
-        """Return when keeping a slot ends unless its sender sends again; None: nothing is kept.
+    def next_end(self) -> float | None:
+        """Return when keeping a slot ends unless its sender sends again; None: nothing is kept."""
+        return min(map(self._end_of, self.kept().values()), default=None)
 
-        Args:
-            lost_at: when a sender counts as lost; None: it does not.
-        """
-        kept = self.kept().values()
-        ends = [each.received + KEPT_SECONDS for each in kept]
-        ends += [at for each in kept if (at := lost_at(each.id.sender)) is not None]
-        return min(ends, default=None)
+    def _end_of(self, kept: Kept) -> float:
+        """Return when keeping a slot ends; a sender that is received is in reach, noticed or not."""
+        end, lost_at = kept.received + KEPT_SECONDS, self._lost_at(kept.id.sender)
+        return end if lost_at is None else min(end, max(lost_at, kept.received + LEASE_SECONDS))
 
     def _fault(self, id: CommandId, names: Sequence[str], active: bool) -> str:
         """Return what is wrong with a command; empty if nothing is."""
@@ -321,7 +320,7 @@ class Owner:
 
     def _end_if_lost(self, slot: Slot, now: float) -> None:
         kept = slot.kept
-        if kept is not None and (now - kept.received > KEPT_SECONDS or self._lost(kept.id.sender, now)):
+        if kept is not None and now >= self._end_of(kept):
             slot.lose_sender()
 
     def _take_up(self, line: Line) -> None:

@@ -129,7 +129,7 @@ class Owners:
                 run,
                 journals(member.owned.robot),
                 floor=recorded.get(member.owned.robot, Recorded()).lamport,
-                lost=watching.lost_for_long,
+                lost_at=watching.long_lost_at,
                 trusting=trusting,
             )
             for member in members
@@ -261,7 +261,7 @@ class Owners:
 
     def next_end(self) -> float:
         """Return when keeping a slot ends unless its sender sends again; inf: nothing is kept."""
-        ends = (owner.next_end(self._watching.long_lost_at) for owner in self._keepers.values())
+        ends = (owner.next_end() for owner in self._keepers.values())
         return min((end for end in ends if end is not None), default=float("inf"))
 
     def use(self, lamport: int) -> None:

@@ -137,11 +137,6 @@ class Watching:
         lost_at = self._lost_at.get(robot)
         return None if lost_at is None else lost_at + LEASE_SECONDS
 
-    def lost_for_long(self, robot: str, now: float) -> bool:
-        """Return whether a robot has been out of reach for longer than the lease."""
-        at = self.long_lost_at(robot)
-        return at is not None and now >= at
-
 
 def refuse_oddities(watching: Watching, settle: float, now: Callable[[], float]) -> None:
     """Return when the robots present have had no conflict for so long.

@@ -9,6 +9,7 @@ import pytest
 from mmrs_runtime.bus.journal import FileJournal
 from mmrs_runtime.bus.messages import REACH, Abort, Begin, CommandId, Commit, Prepare
 from mmrs_runtime.bus.owner import KEPT_SECONDS, Owned, Owner
+from mmrs_runtime.bus.watching import LEASE_SECONDS
 
 OWNED = Owned("b", ("go", "stay"), {"go": ("a", "c"), "stay": ("a",)}, {"go": ("a", "c")})
 
@@ -133,10 +134,19 @@ def test_doubt_ends_when_its_sender_says_that_it_recorded_nothing(owner, end):
 
 
 def test_a_sender_that_is_out_of_reach_for_longer_than_the_lease_holds_nobody_up(journal):
-    owner = Owner(OWNED, "run", journal, lost=lambda sender, now: sender == "a" and now > 2.0)
+    owner = Owner(OWNED, "run", journal, lost_at={"a": 2.0}.get)
     owner.prepare(prepare(), 0.0)
     assert owner.prepare(prepare(sender="c"), 1.0).what == "busy"
     assert owner.prepare(prepare(sender="c"), 3.0).what == "granted"
+
+
+def test_a_slot_is_kept_for_a_sender_that_asks_although_it_seems_out_of_reach(journal):
+    owner = Owner(OWNED, "run", journal, lost_at={"a": 2.0}.get)
+    granted = owner.prepare(prepare(active=False), 3.0).lamport
+    assert not owner.end_lost(owner.next_end() - 0.1), "each round would come later than all before can have"
+    assert owner.prepare(prepare(active=False, round=2), 4.0).lamport == granted
+    assert owner.next_end() == 4.0 + LEASE_SECONDS
+    assert owner.end_lost(owner.next_end())
 
 
 def test_a_sender_that_was_started_again_has_applied_what_it_had_recorded(owner):
