@@ -17,7 +17,8 @@ class CutProxy:
         self.port: int = self._listener.getsockname()[1]
         self._open = threading.Event()
         self._open.set()
-        self._sockets: list[socket.socket] = []
+        self._links: list[tuple[socket.socket, socket.socket]] = []
+        self._unaware: list[socket.socket] = []
         threading.Thread(target=self._accept, daemon=True).start()
 
     def cut(self) -> None:
@@ -26,14 +27,22 @@ class CutProxy:
 
     def heal(self) -> None:
         """Pass on what comes by new connections."""
-        for each in self._sockets:
+        links, self._links = self._links, []
+        for each in (each for link in links for each in link):
             _shut(each)
-        self._sockets.clear()
         self._open.set()
+
+    def end_unnoticed(self) -> None:
+        """End all connections, but let callers notice nothing."""
+        links, self._links = self._links, []
+        self._unaware += [caller for caller, _ in links]
+        for _, called in links:
+            _shut(called)
 
     def close(self) -> None:
         """Stop."""
-        _shut(self._listener)
+        for each in (self._listener, *self._unaware):
+            _shut(each)
         self.heal()
 
     def _accept(self) -> None:
@@ -48,7 +57,7 @@ class CutProxy:
             except OSError:
                 _shut(caller)
                 continue
-            self._sockets += [caller, called]
+            self._links.append((caller, called))
             for one, other in ((caller, called), (called, caller)):
                 threading.Thread(target=self._pass, args=(one, other), daemon=True).start()
 
@@ -60,8 +69,9 @@ class CutProxy:
                 other.sendall(data)
         except OSError:
             self._open.wait()
-        _shut(one)
-        _shut(other)
+        for each in (one, other):
+            if each not in self._unaware:
+                _shut(each)
 
 
 def _shut(each: socket.socket) -> None:

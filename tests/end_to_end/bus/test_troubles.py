@@ -7,7 +7,9 @@ import time
 
 import pytest
 import zenoh
+from cut_proxy import CutProxy
 
+from mmrs_runtime.bus.carriers import over_zenoh, sessions
 from mmrs_runtime.bus.carriers.queries import states_of
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 from mmrs_runtime.bus.messages import digest
@@ -109,3 +111,44 @@ def test_a_robot_whose_disk_cannot_be_written_is_lost_until_it_can(pair, until, 
     until(lambda: not a.lost(["b"]) and not b.trouble("b"), 5.0)
     assert notify(a, "a", "b", 3, active=False)
     assert not b.state(("b", "go")).active
+
+
+@pytest.fixture
+def ways(ends):
+    """Return proxies to two robots."""
+    made = {robot: CutProxy(ends.ports[robot]) for robot in ("a", "b")}
+    yield made
+    for proxy in made.values():
+        proxy.close()
+
+
+def test_a_link_that_only_one_side_has_noticed_to_break_is_renewed(
+    ends, ways, tmp_path, until, notify, monkeypatch
+):
+    lines = []
+    monkeypatch.setattr(over_zenoh, "tell_people", lines.append)
+    monkeypatch.setattr(over_zenoh, "RETURN_SECONDS", 0.3)
+    monkeypatch.setattr(sessions, "LEASE_MILLISECONDS", 8000)
+    file = tmp_path / "no-gossip.json5"
+    file.write_text('{"scouting": {"gossip": {"enabled": false}}}')
+    a, b = (
+        ends.open_at(
+            robot, Endpoints((f"tcp/127.0.0.1:{ends.ports[robot]}",), (f"tcp/127.0.0.1:{way}",), file)
+        )
+        for robot, way in (("a", ways["b"].port), ("b", ways["a"].port))
+    )
+    until(lambda: all(len(end._carrier._session.info.links()) == 2 for end in (a, b)))
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    failures, opened = [OSError("the address is in use")], over_zenoh.opened
+    monkeypatch.setattr(
+        over_zenoh, "opened", lambda config: _raise(failures.pop()) if failures else opened(config)
+    )
+    ways["b"].end_unnoticed()
+    ways["a"].heal()
+    until(lambda: {"'a': link is half-open; reconnecting", "the address is in use"} <= set(lines))
+    assert notify(b, "b", "a")
+    assert notify(a, "a", "b")
+
+
+def _raise(error):
+    raise error

@@ -10,10 +10,8 @@ from __future__ import annotations
 
 import json
 import threading
-import uuid
 from collections.abc import Callable, Sequence
 from functools import partial
-from itertools import count
 from queue import SimpleQueue
 from typing import Any
 
@@ -29,8 +27,11 @@ from .sessions import Endpoints, closed, configuration, exposed, opened, papers_
 ANSWER_SECONDS = 5.0
 """How long an answer is of use; what is not answered is asked again sooner."""
 
-_There = dict[tuple[str, bool], set[str]]
-"""Starts by which a robot is there, by its name and whether it flies by the same plan."""
+RETURN_SECONDS = 3.0
+"""After so long a link to a peer that is back without its robots counts as half-open."""
+
+_There = dict[tuple[str, bool], dict[str, bool]]
+"""Starts of robots, each with whether it is there, by name and whether it flies by the same plan."""
 
 
 class ZenohCarrier:
@@ -58,8 +59,7 @@ class ZenohCarrier:
         self._names = {digest(robot): robot for robot in robots}
         self._endpoints = endpoints
         self._plan = digest(plan)
-        self._process, self._sessions = uuid.uuid4().hex[:12], count(1)
-        self._start = ""
+        self._start, self._starts = "", set[str]()
         self._station: Station | None = None
         self._speaks_for: frozenset[str] | None = None
         self._own: set[str] = set()
@@ -67,6 +67,9 @@ class ZenohCarrier:
         self._declared: list[Any] = []
         self._tokens: dict[str, Any] = {}
         self._there: _There = {}
+        self._config: Any = None
+        self._links: dict[str, Any] = {}
+        self._rejoining = threading.Lock()
         self._work: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._worker = threading.Thread(target=self._serve_all, name="bus answers", daemon=True)
         self._closing = threading.Lock()
@@ -90,26 +93,30 @@ class ZenohCarrier:
                 f"without keys it listens at {', '.join(reached)}:"
                 " any host that reaches it can read and set slots"
             )
-        self._join(config)
+        self._config = config
+        self._join()
         self._worker.start()
         self._doubts = Doubts(self._endpoints.connect, papers_of(file), self._count_peers, self._net)
         self._doubts.start()
         if self._renewing is not None:
             self._renewing.start()
 
-    def _join(self, config: Any) -> None:
+    def _join(self) -> None:
         """Open a session, and show in it the robots that are shown.
 
         Raises:
             OSError: it cannot be opened.
         """
-        session = opened(config)
+        session = opened(self._config)
         with self._closing:
             if not self._over.is_set():
                 self._session = session
                 # By another key than the session before, whose end may be noticed later.
-                self._start = f"{self._process}.{next(self._sessions)}-{self._plan}"
+                self._start = f"{session.info.zid()}-{self._plan}"
+                self._starts.add(self._start)
                 see = self._later(partial(self._see, self._there))
+                meet = self._later(partial(self._meet, self._there))
+                self._declared.append(session.info.declare_transport_events_listener(meet))
                 watched = session.liveliness().declare_subscriber(
                     f"{self._prefix}/*/here/*", see, history=True
                 )
@@ -118,16 +125,21 @@ class ZenohCarrier:
                 return
         closed(session)
 
-    def _rejoin(self, config: Any) -> None:
+    def _rejoin(self, config: Any = None) -> None:
         """Open a session instead of the one there is; meanwhile no robot of another process is there.
+
+        Args:
+            config: None: the same as before.
 
         Raises:
             OSError: it cannot be opened; then this process is off the bus.
         """
-        self._part()
-        there, self._there = self._there, {}
-        self._work.put(lambda: self._lose(there))
-        self._join(config)
+        with self._rejoining:
+            self._part()
+            there, self._there, self._links = self._there, {}, {}
+            self._work.put(lambda: self._lose(there))
+            self._config = self._config if config is None else config
+            self._join()
 
     def _part(self) -> None:
         """Close the session, if there is one."""
@@ -257,22 +269,62 @@ class ZenohCarrier:
         """Take note of who is there, in the session that has this record of it."""
         robot, start = self._parts(sample.key_expr)
         name = self._names.get(robot)
-        own = start.startswith(f"{self._process}.")
-        if name is None or own or self._station is None or there is not self._there:
+        if name is None or start in self._starts or self._station is None or there is not self._there:
             return
         fits = start.endswith(f"-{self._plan}")
-        starts = there.setdefault((name, fits), set())
-        if sample.kind == zenoh.SampleKind.DELETE:
-            starts.discard(start)
-        else:
-            starts.add(start)
-        (self._station.noticed if fits else self._station.stranger)(name, bool(starts))
+        starts = there.setdefault((name, fits), {})
+        starts[start] = sample.kind == zenoh.SampleKind.PUT
+        (self._station.noticed if fits else self._station.stranger)(name, any(starts.values()))
+
+    def _meet(self, there: _There, event: Any) -> None:
+        """Take note of a link to a peer; where its robots were there before, check whether they return."""
+        if there is self._there:
+            peer = str(event.transport.zid)
+            self._links[peer] = event
+            if event.kind == zenoh.SampleKind.PUT and self._robots_at(peer):
+                self._after(RETURN_SECONDS, partial(self._doubt, peer, event))
+
+    def _doubt(self, peer: str, event: Any) -> None:
+        """Open another session where a link to a peer is back, but its robots are not.
+
+        Where two peers connect to each other, one of them may notice an interruption and connect again while
+        the other still holds its old link. Zenoh 1.10 adds the new link to what the other holds, which then
+        announces nothing again and drops messages because their numbers start again: the two never recover.
+        """
+        robots = self._robots_at(peer)
+        if self._links.get(peer) is event and not any(robots.values()):
+            self._net.tell(f"{', '.join(map(repr, sorted(robots)))}: link is half-open; reconnecting")
+            self._reopen(self._there)
+
+    def _reopen(self, there: _There) -> None:
+        """Open another session instead of the one there is, or later where it cannot be opened now."""
+        if there is self._there and not self._over.is_set():
+            try:
+                self._rejoin()
+            except OSError as error:
+                self._net.tell(str(error))
+                self._after(RETURN_SECONDS, partial(self._reopen, self._there))
+
+    def _robots_at(self, peer: str) -> dict[str, bool]:
+        """Return the robots that were there by a peer, each with whether it still is."""
+        return {
+            name: here
+            for (name, _), starts in self._there.items()
+            for start, here in starts.items()
+            if start.startswith(f"{peer}-")
+        }
+
+    def _after(self, seconds: float, work: Callable[[], None]) -> None:
+        """Leave work to this carrier's own thread, some time later."""
+        timer = threading.Timer(seconds, self._work.put, (work,))
+        timer.daemon = True
+        timer.start()
 
     def _lose(self, there: _There) -> None:
         """Mark all present peers as gone."""
         if self._station is not None:
             for (name, fits), starts in there.items():
-                if starts:
+                if any(starts.values()):
                     (self._station.noticed if fits else self._station.stranger)(name, False)
 
     def _parts(self, key: Any) -> tuple[str, str]:
