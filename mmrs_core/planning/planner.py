@@ -87,7 +87,7 @@ class _Remembered:
 
 
 class _NotBetterError(InfeasibleError):
-    """A plan is no better than one that was found before, even before its robots are kept apart."""
+    """A plan is not better than one that was found before, even before its robots are kept apart."""
 
 
 class _ShortError(InfeasibleError):
@@ -218,7 +218,7 @@ def _kept_apart(
 ) -> Plan:
     """Return a plan as its robots keep apart: waiting on their paths or starting later, as costs less.
 
-    What is no better than the best so far is not sought any further.
+    What is not better than the best so far is not sought any further.
     """
     try:
         waiting = separated(team, found)
