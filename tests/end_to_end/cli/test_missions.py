@@ -36,7 +36,7 @@ def demonstrates(mmrs, tmp_path, example):
 
 
 def test_an_example_can_be_demonstrated(mmrs, tmp_path):
-    demonstrates(mmrs, tmp_path, "mixed-team")
+    demonstrates(mmrs, tmp_path, "drone-and-rover")
 
 
 def test_a_demonstration_is_the_same_again_and_can_be_reported_with_its_tasks_and_its_plan(mmrs, tmp_path):

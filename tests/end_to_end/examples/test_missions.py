@@ -52,8 +52,15 @@ def test_only_what_the_mission_accepts_is_unknown(example):
     assert unknown == JUSTIFIED_UNKNOWNS.get(example.scene.name, set())
 
 
-def test_planning_twice_gives_the_same_plan(example):
-    assert pipeline.plan(example.scene) == example.plan
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("drone-and-rover", "outfall", "two-auv-survey"),
+        *(pytest.param(name, marks=pytest.mark.thorough) for name in ("mixed-team", "solar-park")),
+    ],
+)
+def test_planning_twice_gives_the_same_plan(taken, name):
+    assert pipeline.plan(taken(name).scene) == taken(name).plan
 
 
 def test_the_behaviour_survives_a_file(example, contributions, tmp_path):
