@@ -86,7 +86,8 @@ def separated(team: Team, plan: Plan) -> Plan:
 
     Of the two robots that come too near to each other first, that one waits with which the mission ends
     sooner, wherever along its path it keeps apart from all others. Robots on the ground and at home count
-    as all others do, but for neighbouring homes (see `Proximity`).
+    as all others do, but for neighbouring homes (see `Proximity`). They keep apart also if charging ends
+    early: waits that are long enough for that are sought where those for the declared time are not.
 
     Args:
         team: of the scene.
@@ -98,14 +99,24 @@ def separated(team: Team, plan: Plan) -> Plan:
     least = distance_to_keep(team.scene)
     if least is None:
         return plan
-    traffic = Traffic(team.scene, plan, least)
+    made = _separated(team, Traffic(team.scene, plan, least))
+    if _recharges(made) and Traffic(team.scene, made, least, hasty=True).conflicts:
+        made = _separated(team, Traffic(team.scene, plan, least, hasty=True))
+    return made
+
+
+def _recharges(plan: Plan) -> bool:
+    return any(isinstance(step, Recharge) for each in plan.robots for step in each.steps)
+
+
+def _separated(team: Team, traffic: Traffic) -> Plan:
     while traffic.conflicts:
         first = traffic.earliest()
         options = list(_waiting(team, traffic, first))
         better = [each for each in options if len(each.conflicts) < len(traffic.conflicts)]
         if not better:
             homes = {robot.name: robot.home for robot in team.scene.robots}
-            raise TooNearError(first, least, homes)
+            raise TooNearError(first, traffic.least, homes)
         traffic = min(better, key=lambda each: each.cost)
     return traffic.plan
 
@@ -122,9 +133,12 @@ def starting_later(
         decisions: to begin with.
         planned: makes the plan of decisions; None where they lead to none.
     """
-    found, least = planned(decisions), distance_to_keep(team.scene) or 0.0
+    found, least, hasty = planned(decisions), distance_to_keep(team.scene) or 0.0, False
     traffic = None if found is None else Traffic(team.scene, found, least)
     for _ in range(_ROUNDS):
+        if traffic is not None and not traffic.conflicts and _recharges(traffic.plan):
+            hasty = True
+            traffic = Traffic(team.scene, traffic.plan, least, hasty=True)
         if traffic is None or not traffic.conflicts:
             break
         first, better = traffic.earliest(), None
@@ -137,7 +151,7 @@ def starting_later(
                 decisions, delays={**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
             )
             plan = planned(later) if shift < inf else None
-            other = None if plan is None else Traffic(team.scene, plan, least)
+            other = None if plan is None else Traffic(team.scene, plan, least, hasty=hasty)
             if other is not None and other.is_ahead_of(first):
                 decisions, better = later, other
                 break
@@ -168,10 +182,16 @@ def _allowed(team: Team, before: Traffic, plan: Plan) -> Traffic | None:
 
 
 class Traffic:
-    """A plan with what its robots take up, and where they come too near to each other."""
+    """A plan with what its robots take up, and where they come too near to each other.
 
-    def __init__(self, scene: Scene, plan: Plan, least: float) -> None:
-        self.plan, self._scene, self._least = plan, scene, least
+    Attributes:
+        plan: of all robots.
+        least: metres that they have to keep apart.
+        conflicts: the earliest of each two robots, by their names.
+    """
+
+    def __init__(self, scene: Scene, plan: Plan, least: float, *, hasty: bool = False) -> None:
+        self.plan, self.least, self._hasty = plan, least, hasty
         self._robots = {robot.name: robot for robot in scene.robots}
         self._names = tuple(each.robot for each in plan.robots)
         self._timelines: Mapping[str, Timeline] = {}
@@ -189,7 +209,7 @@ class Traffic:
 
     def _update(self, changed: frozenset[str]) -> None:
         """Find where those who have changed come too near to others."""
-        self._timelines = timelines_of(self.plan, self._robots)
+        self._timelines = timelines_of(self.plan, self._robots, hasty=self._hasty)
         fresh = {
             name: pieces_of(self._timelines[name].rides, number)
             for number, name in enumerate(self._names)
@@ -203,7 +223,7 @@ class Traffic:
         self.conflicts = {**kept, **dict(self._conflicts(proximity, i, j))}
 
     def _proximity(self, parts: Sequence[Pieces]) -> Proximity:
-        return Proximity(joined(parts), [self._robots[name].home for name in self._names], self._least)
+        return Proximity(joined(parts), [self._robots[name].home for name in self._names], self.least)
 
     def _unordered(self, pieces: Pieces, i: Indices, j: Indices) -> tuple[Indices, Indices]:
         """Return those pairs of which neither piece is over for certain before the other one begins."""

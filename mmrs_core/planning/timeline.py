@@ -90,9 +90,18 @@ class Timeline:
     known: tuple[Mapping[str, int], ...]
 
 
-def timelines_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, Timeline]:
-    """Return the timeline of every robot, all arms of choices included; robots without steps stay at home."""
-    walks = {each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot])) for each in plan.robots}
+def timelines_of(plan: Plan, robots: Mapping[str, Robot], *, hasty: bool = False) -> dict[str, Timeline]:
+    """Return the timeline of every robot, all arms of choices included; robots without steps stay at home.
+
+    Args:
+        plan: of all robots.
+        robots: by name.
+        hasty: whether charging may end before its declared time.
+    """
+    walks = {
+        each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot]), hasty)
+        for each in plan.robots
+    }
     left = {each.robot: list(each.steps) for each in plan.robots}
     given: dict[str, _Given] = {}
     while any(left.values()):
@@ -110,6 +119,7 @@ class _Walk:
     """One robot in its steps, as early and as late as it may be.
 
     Attributes:
+        hasty: see `timelines_of`.
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet.
@@ -118,6 +128,7 @@ class _Walk:
 
     robot: Robot
     kinematics: Kinematics
+    hasty: bool
     rides: list[Ride] = field(default_factory=list)
     now: float = 0.0
     by: float = 0.0
@@ -161,7 +172,7 @@ class _Walk:
             self._upright(step)
         else:
             charging = self.kinematics.charging_time(step.end - step.begin)
-            self._stay(charging.expected, charging.longest)
+            self._stay(charging.shortest if self.hasty else charging.expected, charging.longest)
 
     def _upright(self, step: Launch | Recover) -> None:
         column = self.here, (step.at[0], step.at[1], step.up)

@@ -55,7 +55,8 @@ def made(planned, contributions, controllers):
 
 
 @pytest.mark.parametrize(
-    "example", ["drone-and-rover", "pool", *(pytest.param(each, marks=pytest.mark.thorough) for each in OTHERS)]
+    "example",
+    ["drone-and-rover", "pool", *(pytest.param(each, marks=pytest.mark.thorough) for each in OTHERS)],
 )
 def test_a_dry_run_of_an_example_replays(made, example):
     controllers = made(example)

@@ -21,6 +21,19 @@ JUSTIFIED_UNKNOWNS = {
     name: {"range"} for name in ("Objects in the pool", "Outfall", "Course", "Two fields", "Lost float")
 }
 
+LONGEST = {
+    "Carbon dioxide near L'Aquila": 1474.0,
+    "Course": 171.0,
+    "Dam inspection": 3853.0,
+    "Lost float": 204.0,
+    "Objects in the pool": 395.0,
+    "Outfall": 1322.0,
+    "Recycling yard after a fire": 473.0,
+    "Thermal inspection": 555.0,
+    "Two fields": 192.0,
+}
+"""Seconds that missions take at most, by name: as planned so far, rounded up."""
+
 
 def test_it_is_valid_without_a_warning(example):
     assert [each for each in example.faults if each.severity is not Severity.NOTE] == []
@@ -41,6 +54,10 @@ def test_every_task_is_served(example):
 
 def test_every_robot_has_something_to_do(example):
     assert all(any(isinstance(step, Step) for step in robot.steps) for robot in example.plan.robots)
+
+
+def test_no_mission_takes_longer_than_it_did(example):
+    assert example.plan.makespan <= LONGEST[example.scene.name]
 
 
 def test_nothing_stands_against_the_behaviour(example):

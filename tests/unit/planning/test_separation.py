@@ -4,13 +4,13 @@ from math import dist
 
 import numpy as np
 import pytest
-from plain_scenes import CRAWLER, control, road, robot, scene, task, visit
+from plain_scenes import CRAWLER, control, road, robot, scene, task, visit, with_kinematics
 from plan_replay import complaints
 
 from mmrs_core.analysis.distance import paired_distances
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.separation import distance_to_keep, first_conflict, stacked_altitudes
+from mmrs_core.planning.separation import Traffic, distance_to_keep, first_conflict, stacked_altitudes
 from mmrs_core.scene import Policy, Transit
 
 
@@ -73,6 +73,21 @@ def test_robots_that_wait_for_each_other_aloft_take_turns():
     assert complaints(whole, found) == []
     assert first_conflict(whole, found, 10.0) is None
     assert [each.sorties for each in found.robots] == [2, 2]
+
+
+def test_robots_keep_apart_also_where_charging_takes_less_time_than_planned():
+    team = (with_kinematics(robot("r1"), endurance=120.0), robot("r2", (300.0, 0.0, 0.0)))
+    place = (100.0, 0.0, 20.0)
+    works = {
+        "a": {"r1": visit(place, hold=60.0)},
+        "b": {"r1": visit(place, hold=60.0)},
+        "c": {"r2": visit(place, hold=200.0)},
+    }
+    whole = scene(team, works, after=[("a", "b"), ("a", "c")], minimum_separation=10.0)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert found.robots[0].sorties == 2
+    assert not Traffic(whole, found, 10.0, hasty=True).conflicts
 
 
 def nearest(whole, found, name, place):
