@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,22 +12,15 @@ import numpy as np
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature, Role
-from mmrs_core.grounding.features import child, children, number
-from mmrs_core.languages.element import (
-    Element,
-    container_of,
-    containing_feature,
-    descendants,
-    is_kind,
-    label_of,
-    metaclass_of,
-)
+from mmrs_core.grounding.features import child, children
+from mmrs_core.languages.element import Element, label_of, metaclass_of
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.naming import unreadable
 from mmrs_core.projects.attributes import asked_values, decided, drawn_values, missing, set_values
 from mmrs_core.projects.choosing import Decision, quoted, shape_of
 from mmrs_core.projects.heights import Levels
-from mmrs_core.projects.kinds import CONTEXT, MISSION, Kind
+from mmrs_core.projects.kinds import MISSION, Kind
+from mmrs_core.projects.likeness import DrawnElements, differences
 from mmrs_core.projects.shapes import DECIMALS, DrawnShape, Floats, UnfitError, around, begin_of, shape
 
 if TYPE_CHECKING:
@@ -36,12 +28,8 @@ if TYPE_CHECKING:
 
     from mmrs_core.languages.registry import Registry
 
-Position = tuple[float | None, float | None]
-
 LONGEST_NAME = 80
 _SHUT = ("forbiddenAreas", "obstacles")
-_ROUNDED = 1e-3
-"""Metres by which heights that are the same may differ, as files round them."""
 
 RALLY_RADIUS = 10.0
 """Metres around a point that is to be an emergency area, of which clearances leave something."""
@@ -127,11 +115,10 @@ class Builder:
         self._registry = registry
         self._names = names
         self._around = around
+        self._drawn = DrawnElements(mission, context)
         shut = [each for name in _SHUT for each in children(context, name)]
-        self._closed = [ring for each in shut if len(ring := np.array([*_positions(each)], float)) > 2]
-        self._known: dict[frozenset[object], list[Element]] = {}
-        for each in (each for root in (mission, context) for each in descendants(root) if _drawn(each)):
-            self._known.setdefault(frozenset(_positions(each)), []).append(each)
+        rings = [self._drawn.positions(each) for each in shut]
+        self._closed = [np.array(ring, float) for ring in rings if len(ring) > 2 and (None, None) not in ring]
 
     def build(self, feature: MapFeature, decision: Decision) -> Outcome:
         """Add the element of a feature; return what became of it."""
@@ -157,9 +144,7 @@ class Builder:
         exported = feature.role is Role.TASK and feature.properties.get("type") == kind.name
         heights = self._heights(element, kind, found, given, notes, usual=not exported)
         self._place(element, kind, found, heights, notes)
-        alike = self._known.setdefault(frozenset(_positions(element)), [])
-        drawing = _edges if found.geometry is Geometry.AREA else _course
-        for other in (each for each in alike if drawing(each) == drawing(element)):
+        for other in self._drawn.alike(element, feature.name, area=found.geometry is Geometry.AREA):
             called = label_of(other) or "an element without a name"
             # one drawing may have a shape twice, for different tasks
             twice = other not in self.comments or called == feature.name
@@ -167,7 +152,7 @@ class Builder:
                 reason = self._already(feature, kind, element, _stated(element, given, found), other)
                 return replace(told, reason=reason)
             notes.append(f"drawn as {called} is, too")
-        alike.append(element)
+        self._drawn.add(element)
         wanted = given.get("name")
         label = kind.symbol.label if kind.symbol is not None else kind.name
         name = self._names.unique(wanted if isinstance(wanted, str) else feature.name, label)
@@ -183,19 +168,11 @@ class Builder:
     ) -> str:
         """Return that an element is there already, and what differs; a fault if the drawn one is higher."""
         called = label_of(other) or "an element without a name"
-        there = {name: getattr(other, name, None) for name in stated}
-        different = [
-            f"{name} {there[name]} instead of {value}"
-            for name, value in stated.items()
-            if not _alike(there[name], value)
-        ]
-        heights = [[number(at, "altitude") or 0.0 for at in _coordinates(each)] for each in (element, other)]
-        if any(heights[0]) and not all(map(_alike, *heights)):
-            different.append("other heights")
+        different = differences(element, other, stated)
         if not different:
             return f"the same is there already: {called}"
         reason = f"its shape is there already: {called}, with {', '.join(different)}; change it there"
-        top, drawn = there.get("maxHeight"), stated.get("maxHeight")
+        top, drawn = getattr(other, "maxHeight", None), stated.get("maxHeight")
         if isinstance(top, float) and isinstance(drawn, float) and drawn > top:
             self.refuse_open(kind, feature.place, repr(feature.name[:LONGEST_NAME]), reason, feature.name)
         return reason
@@ -415,50 +392,3 @@ def _stated(element: Element, given: Mapping[str, object], found: DrawnShape) ->
     stated = {metaclass.feature(name).attribute: None for name in sorted(names)}
     values = {name: getattr(element, name) for name in stated}
     return {name: value for name, value in values.items() if value is not None}
-
-
-def _alike(one: object, two: object) -> bool:
-    if isinstance(one, float) and isinstance(two, float):
-        return isclose(one, two, abs_tol=_ROUNDED)
-    return str(one) == str(two)
-
-
-def _drawn(element: Element) -> bool:
-    named = ((MISSION, "Task"), (CONTEXT, "Area"), (CONTEXT, "ContextElement"))
-    return any(is_kind(element, *key) for key in named)
-
-
-def _positions(element: Element) -> Iterator[Position]:
-    """Return latitude and longitude of everything in an element, except where robots begin."""
-    return map(position_of, _coordinates(element))
-
-
-def position_of(coordinate: Element | None) -> Position:
-    """Return latitude and longitude of a coordinate, as far as it has them."""
-    if coordinate is None or not is_kind(coordinate, MISSION, "GeoCoordinate"):
-        return None, None
-    return number(coordinate, "latitude"), number(coordinate, "longitude")
-
-
-def _course(element: Element) -> list[Position]:
-    return list(_positions(element))
-
-
-def _edges(element: Element) -> set[frozenset[Position]]:
-    """Return the sides of rings; the same from whichever corner and whichever way round they are drawn."""
-    rings: dict[Element | None, list[Position]] = {}
-    for coordinate, position in zip(_coordinates(element), _positions(element), strict=True):
-        rings.setdefault(container_of(coordinate), []).append(position)
-    return {
-        frozenset(side)
-        for ring in rings.values()
-        for side in zip(ring, (*ring[1:], ring[0]), strict=True)
-        if side[0] != side[1]
-    }
-
-
-def _coordinates(element: Element) -> Iterator[Element]:
-    for each in descendants(element):
-        at = containing_feature(each)
-        if is_kind(each, MISSION, "GeoCoordinate") and at is not None and at.name != "initialPosition":
-            yield each

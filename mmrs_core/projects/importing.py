@@ -12,21 +12,20 @@ import numpy as np
 
 from mmrs_core.diagnostics import Diagnostic, Place, in_order
 from mmrs_core.drawings.drawing import LeftOut, MapFeature, Role
-from mmrs_core.errors import InvalidModelError, UsageError
+from mmrs_core.errors import UsageError
 from mmrs_core.grounding.features import children
 from mmrs_core.grounding.frame import frame_of
-from mmrs_core.languages.element import descendants, label_of, metaclass_of
-from mmrs_core.languages.modelset import project_files
+from mmrs_core.languages.element import descendants, label_of
 from mmrs_core.languages.xmi.events import read_bytes
-from mmrs_core.pipeline import check_models, read_models
 from mmrs_core.projects import ALTITUDE
-from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames, position_of
+from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames
 from mmrs_core.projects.choosing import Assignment, Chooser, Decision
 from mmrs_core.projects.heights import Levels, levels_at
-from mmrs_core.projects.kinds import CONTEXT, MISSION, ImportKinds
+from mmrs_core.projects.kinds import MISSION, ImportKinds
+from mmrs_core.projects.likeness import position_of
 from mmrs_core.projects.shapes import UnfitError, shape
+from mmrs_core.projects.target import Target, blank, opened
 from mmrs_core.projects.team import Home, RobotWanted, TypeFile, homes_for, medium_of
-from mmrs_core.projects.texts import text_of, with_added
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
@@ -93,24 +92,6 @@ class ImportRefusedError(UsageError):
         self.result = result
 
 
-@dataclass(slots=True)
-class _Project:
-    """A project in memory: a new one, or one with its files.
-
-    Attributes:
-        texts: what files hold now, by file.
-        known: the faults that it has already.
-    """
-
-    mission: Element
-    context: Element
-    files: dict[str, Path]
-    robots: tuple[Path, ...] = ()
-    types: Mapping[str, Element] = field(default_factory=dict)
-    texts: Mapping[Path, bytes] = field(default_factory=dict)
-    known: frozenset[tuple[str, str]] = frozenset()
-
-
 def decided(
     features: Sequence[MapFeature], options: ImportOptions, kinds: ImportKinds
 ) -> tuple[tuple[Decision, ...], tuple[str, ...]]:
@@ -147,7 +128,7 @@ def imported(
     Raises:
         UsageError: if choices or robots are wrong.
         ImportRefusedError: if attributes are missing or wrong, or an obstacle cannot be imported.
-        InvalidModelError: if the project that is to be added to cannot be read, or has no place on the Earth.
+        InvalidModelError: if the project that is to be added to cannot be read, or is a local one.
     """
     kinds = ImportKinds(contributions)
     lost = [each for each in left_out if each.lost is not None]
@@ -156,19 +137,20 @@ def imported(
     drawn = [each for each, decision in zip(features, decisions, strict=True) if decision.kind.name == "home"]
     fine = [each for each in drawn if not _unfit(each)]
     homes = homes_for(options.robots, fine)
-    project = _opened(folder, contributions) if into else _blank(folder, options, contributions)
-    levels = _levels(project) if into else _new_levels(project.mission, homes)
+    target = opened(folder, contributions) if into else blank(folder, options.title, contributions)
+    is_nowhere = frame_of(target.mission, target.context).latitude is None
+    levels = _levels(target, homes)
     names = UniqueNames(
-        label_of(each) for root in (project.mission, project.context) for each in descendants(root)
+        label_of(each) for root in (target.mission, target.context) for each in descendants(root)
     )
     languages = contributions.languages
-    around = _surroundings(project, levels, homes, options, contributions)
-    builder = Builder(project.mission, project.context, languages, names, around)
+    around = _surroundings(target, levels, homes, options, contributions)
+    builder = Builder(target.mission, target.context, languages, names, around)
     if not into and options.complete is not None:
-        builder.comments |= options.complete(project.mission, project.context, languages)
-    team = project.mission.team  # type: ignore[attr-defined]  # a mission
+        builder.comments |= options.complete(target.mission, target.context, languages)
+    team = target.mission.team  # type: ignore[attr-defined]  # a mission
     old = len(team.robots)
-    added_types = _add_robots(project, homes, options, builder, names, languages.create)
+    added_types = _add_robots(target, homes, options, builder, names, languages.create)
     outcomes = _built(builder, features, decisions, team, old)
     rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)
     for each, decision in zip(lost, meant, strict=True):
@@ -178,12 +160,12 @@ def imported(
     if builder.faults:
         raise ImportRefusedError(tuple(builder.faults), ImportResult((*outcomes, *rest), {}, (), notes))
     ordered = _keep_order(builder, features, outcomes)
-    texts = _texts(project, builder, options, languages) | added_types
-    files = {file: data for file, data in texts.items() if project.texts.get(file) != data}
-    models, found = _diagnosed(project, files, contributions)
+    texts = added_types | target.texts_with(builder.added, languages, builder.comments)
+    files = {file: data for file, data in texts.items() if target.texts.get(file) != data}
+    models, found = target.diagnosed(files, contributions)
     places = {each.path: each.place for each in outcomes if each.path}
-    faults = [_at_source(each, places) for each in found if (each.code, each.message) not in project.known]
-    notes = (*notes, *_notes(project, levels, features, ordered))
+    faults = [_at_source(each, places) for each in found if (each.code, each.message) not in target.known]
+    notes = (*notes, *_notes(target, homes, ordered, begun=into and is_nowhere))
     return ImportResult((*outcomes, *rest), files, in_order(faults), notes, models)
 
 
@@ -195,54 +177,31 @@ def _unfit(feature: MapFeature) -> str:
     return ""
 
 
-def _blank(folder: Path, options: ImportOptions, contributions: Contributions) -> _Project:
-    create = contributions.languages.create
-    title = UniqueNames(()).unique(options.title, "imported mission")
-    mission = create(MISSION, "Mission", name=title, team=create(MISSION, "Team"))
-    context = create(CONTEXT, "Context", name=title)
-    return _Project(mission, context, {"mission": folder / "mission.xmi", "context": folder / "context.xmi"})
-
-
-def _opened(folder: Path, contributions: Contributions) -> _Project:
-    models, faults = read_models(folder, contributions)
-    if models is None:
-        raise InvalidModelError(f"{folder}: cannot be added to: its mission is not readable", faults)
-    mission_file, context_file, robots = project_files(folder)
-    beside = context_file or mission_file.with_name(f"context{mission_file.suffix}")
-    if frame_of(models.mission, models.context).latitude is None:
-        words = "has no place on the Earth: give it a geographic origin, or its first robot a geographic home"
-        raise InvalidModelError(f"{mission_file}: {words}")
-    context = models.context or contributions.languages.create(CONTEXT, "Context")
-    texts = {file: read_bytes(file) for file in (mission_file, context_file) if file is not None}
-    known = frozenset((each.code, each.message) for each in (*faults, *check_models(models, contributions)))
-    files = {"mission": mission_file, "context": beside}
-    return _Project(models.mission, context, files, robots, models.robots, texts, known)
-
-
-def _levels(project: _Project) -> Levels:
-    frame = frame_of(project.mission, project.context)
-    return Levels(frame.altitude_reference, frame.altitude, frame.geoid_separation)
-
-
-def _new_levels(mission: Element, homes: Sequence[Home]) -> Levels:
-    """Return what heights count from in a new mission: the first home."""
+def _levels(target: Target, homes: Sequence[Home]) -> Levels:
+    """Return what heights count from: the project's origin, or its first home, which begins it."""
+    frame = frame_of(target.mission, target.context)
+    if frame.latitude is not None:
+        return Levels(frame.altitude_reference, frame.altitude, frame.geoid_separation)
     first = homes[0].feature if homes else None
     height = float(first.heights[0][0]) if first is not None and first.heights else None
     levels = levels_at(first.reference, height) if first is not None else Levels()
-    mission.altitudeReference = levels.reference  # type: ignore[attr-defined]  # a mission
+    if target.mission.tasks and levels.reference != frame.altitude_reference:  # type: ignore[attr-defined]
+        return Levels(frame.altitude_reference, None)  # what its tasks count from is not known
+    target.mission.altitudeReference = levels.reference  # type: ignore[attr-defined]  # a mission
+    target.restated["altitudeReference"] = levels.reference
     return levels
 
 
 def _surroundings(
-    project: _Project,
+    target: Target,
     levels: Levels,
     homes: Sequence[Home],
     options: ImportOptions,
     contributions: Contributions,
 ) -> Basis:
-    frame = frame_of(project.mission, project.context)
+    frame = frame_of(target.mission, target.context)
     types = [options.types[each.robot.type].element for each in homes]
-    types += [project.types[name] for name in _names_of_types(project.mission) if name in project.types]
+    types += [target.types[name] for name in _names_of_types(target.mission) if name in target.types]
     latitude, longitude = homes[0].position if homes else (frame.latitude, frame.longitude)
     return Basis(
         levels,
@@ -250,7 +209,7 @@ def _surroundings(
         any(medium_of(each, contributions) == "air" for each in types) if types else True,
         options.simplify,
         None if latitude is None or longitude is None else np.array([latitude, longitude]),
-        {"tasks": frame.crs, "context": getattr(project.context, "crs", None) or frame.crs},
+        {"tasks": frame.crs, "context": getattr(target.context, "crs", None) or frame.crs},
     )
 
 
@@ -259,7 +218,7 @@ def _names_of_types(mission: Element) -> list[str]:
 
 
 def _add_robots(
-    project: _Project,
+    target: Target,
     homes: Sequence[Home],
     options: ImportOptions,
     builder: Builder,
@@ -268,13 +227,13 @@ def _add_robots(
 ) -> dict[Path, bytes]:
     """Add robots to the team; return the files of types that the project does not have."""
     texts: dict[Path, bytes] = {}
-    folder = project.files["mission"].parent / "robots"
+    folder = target.files["mission"].parent / "robots"
     for home in homes:
         name = names.unique(home.robot.name, "robot")
         builder.add_robot(
             create(MISSION, "Robot", name=name, type=home.robot.type), home.position, home.feature
         )
-        if home.robot.type in project.types:
+        if home.robot.type in target.types:
             continue
         source = options.types[home.robot.type].file
         data, number, file = read_bytes(source), 1, folder / source.name
@@ -332,40 +291,6 @@ def _keep_order(builder: Builder, features: Sequence[MapFeature], outcomes: Sequ
     return count
 
 
-def _texts(
-    project: _Project, builder: Builder, options: ImportOptions, registry: Registry
-) -> dict[Path, bytes]:
-    """Return the texts of the mission and its context, as far as there is anything in them."""
-    texts: dict[Path, bytes] = {}
-    for name, root in (("mission", project.mission), ("context", project.context)):
-        file = project.files[name]
-        added = {key: each for key, each in builder.added.items() if key in metaclass_of(root).by_name}
-        if name == "mission" and "robots" in builder.added:
-            added["robots"] = builder.added["robots"]
-        if file in project.texts:
-            texts[file] = with_added(project.texts[file], root, added, file, registry, builder.comments)
-        elif name == "mission" or added or not project.texts:
-            texts[file] = text_of(root, file, registry, builder.comments)
-    return texts
-
-
-def _diagnosed(
-    project: _Project, files: Mapping[Path, bytes], contributions: Contributions
-) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
-    """Return the project as it will be, and its faults."""
-    robots = dict.fromkeys((*project.robots, *(file for file in files if file.parent.name == "robots")))
-    context = project.files["context"]
-    there = context in files or context in project.texts
-    models, faults = read_models(
-        project.files["mission"],
-        contributions,
-        context=context if there else None,
-        robots=tuple(robots),
-        unsaved={file.resolve(): data for file, data in files.items()},
-    )
-    return models, faults if models is None else (*faults, *check_models(models, contributions))
-
-
 def _at_source(fault: Diagnostic, places: Mapping[str, Place]) -> Diagnostic:
     """Return a fault of an imported element with the line of the feature that it was made of."""
     found = _MEMBER.match(fault.place.path)
@@ -373,8 +298,14 @@ def _at_source(fault: Diagnostic, places: Mapping[str, Place]) -> Diagnostic:
     return fault if place is None else replace(fault, place=place)
 
 
-def _notes(project: _Project, levels: Levels, features: Sequence[MapFeature], ordered: int) -> Iterator[str]:
-    origin = "the origin" if project.texts else "the first robot's home"
+def _notes(target: Target, homes: Sequence[Home], ordered: int, *, begun: bool) -> Iterator[str]:
+    origin = "the origin" if target.texts and not begun else "the first robot's home"
+    if begun and homes:
+        latitude, longitude = homes[0].position
+        where = f"{latitude:.7g}, {longitude:.7g}"
+        yield f"the project had no place on the Earth; it gets the home of {homes[0].robot.name}: {where}"
+    elif begun:
+        yield "the project has no place on the Earth yet: it gets the home of its first robot"
     yield f"heights count from {origin}; the ground is taken to be level at its height"
     if ordered:
         yield f"waypoints keep their order: {ordered} dependencies between tasks"

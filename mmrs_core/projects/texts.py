@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from mmrs_core.analysis.fixes.repair import with_edits
@@ -33,26 +35,29 @@ def with_added(
     file: Path,
     registry: Registry,
     comments: Mapping[Element, str],
+    restated: Mapping[str, str] = MappingProxyType({}),
 ) -> bytes:
     """Return the text of a model with elements that were added to its root, behind others of their features.
 
     Args:
-        data: the text before.
+        data: the text before, whose line endings stay.
         root: with the elements at the end of its features.
         added: the elements, by feature of the root; robots are those of a mission's team.
         file: that the text is of; all of one in JSON is written again.
         registry: the metamodels.
         comments: on elements.
+        restated: attributes of the root that have another value than in the text before.
 
     Raises:
         UnreadableError: if the text is not in UTF-8.
     """
+    ending = b"\r\n" if data.count(b"\r\n") == data.count(b"\n") > 0 else b"\n"
     if is_json(file.name):
-        return to_json((root,), registry, file=file)
+        return to_json((root,), registry, file=file).replace(b"\n", ending)
     markup = Markup(data, str(file))
     tag = markup.models()[0]
     prefixes = tag.prefixes()
-    edits, texts = [], []
+    edits, texts = [_restated(tag, name, value) for name, value in restated.items()], []
     for name, elements in added.items():
         outer = tag.named("team")[0] if name == "robots" else tag
         depth = 1 if outer is tag else 2
@@ -68,9 +73,18 @@ def with_added(
             texts.append(text)
     if texts:
         edits.append(_inside(tag, "".join(texts), data))
+    edits = [replace(each, text=each.text.replace("\n", ending.decode())) for each in edits]
     changed = with_edits(data, edits)
     assert changed is not None  # they are at different places
     return changed
+
+
+def _restated(tag: Tag, name: str, value: str) -> Edit:
+    before = tag.attribute(name)
+    if before is not None:
+        return Edit(before.value_begin, before.value_end, in_attribute(value))
+    place = tag.attributes[-1].value_end + 1
+    return Edit(place, place, f' {name}="{in_attribute(value)}"')
 
 
 def _declared(tag: Tag, prefix: str, ns_uri: str) -> Edit:
@@ -90,7 +104,9 @@ def _after(tag: Tag, text: str, data: bytes) -> Edit:
 def _inside(tag: Tag, text: str, data: bytes) -> Edit:
     """Return what adds lines at the end of a tag, which may have no inside yet."""
     if tag.closing == tag.end:
-        return Edit(tag.inside - 2, tag.inside, f">\n{text}</{tag.name}>")
+        before = data[data.rfind(b"\n", 0, tag.begin) + 1 : tag.begin].decode()
+        indent = "" if before.strip() else before
+        return Edit(tag.inside - 2, tag.inside, f">\n{text}{indent}</{tag.name}>")
     start = data.rfind(b"\n", 0, tag.closing) + 1
     if data[start : tag.closing].strip():
         return Edit(tag.closing, tag.closing, f"\n{text}")

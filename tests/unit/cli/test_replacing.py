@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from mmrs_core.cli import run
 from mmrs_core.cli.replacing import make_folder, replace_files
 
 
@@ -134,11 +135,18 @@ def test_a_folder_that_may_not_be_written_to_leaves_all_as_it_was(tmp_path, text
     assert all_in(tmp_path) == {**before, "locked": None}
 
 
-def killed_at(owner, name, monkeypatch, write, *given):
-    """Call a function in a process that is killed when another is called."""
+def killed_at(owner, name, monkeypatch, write, *given, after=0):
+    """Call a function in a process that is killed when another is called once more than so often."""
     child = os.fork()
     if not child:
-        monkeypatch.setattr(owner, name, lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+        function, calls = getattr(owner, name), iter(range(after))
+
+        def counted(*arguments):
+            if next(calls, None) is None:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return function(*arguments)
+
+        monkeypatch.setattr(owner, name, counted)
         write(*given)
         os._exit(0)
     assert os.waitpid(child, 0)[1] == signal.SIGKILL
@@ -154,3 +162,22 @@ def test_a_new_folder_is_whole_or_not_there(owner, name, tmp_path, monkeypatch):
 def test_no_file_is_replaced_before_all_are_on_the_disk(tmp_path, texts, before, monkeypatch):
     killed_at(Path, "replace", monkeypatch, replace_files, texts)
     assert {path.exists() and path.read_bytes() for path in texts} == {b"old", False}
+
+
+@pytest.mark.parametrize("renamed", [1, 2])
+def test_an_import_that_is_killed_between_files_leaves_a_valid_project_that_the_next_completes(
+    renamed, tmp_path, monkeypatch
+):
+    farm, rover = str(tmp_path / "farm"), "--robot=R=Clearpath Husky A300@43.0637,11.6525"
+    drawing = str(Path(__file__).parents[3] / "examples" / "drawings" / "farm.kml")
+    (tmp_path / "gate.csv").write_text("lat,lon\n43.0636,11.652\n")
+    kite = "--robot=K=Freefly Astro LR1@43.0635,11.652"
+    assert run(["import", str(tmp_path / "gate.csv"), "-o", farm, kite]) == 0
+    killed_at(Path, "replace", monkeypatch, run, ["import", drawing, "--into", farm, rover], after=renamed)
+    assert (tmp_path / "farm" / "robots" / "clearpath-husky-a300.xmi").exists()
+    assert ("barn" in (tmp_path / "farm" / "context.xmi").read_text()) is (renamed == 2)
+    assert "lane" not in (tmp_path / "farm" / "mission.xmi").read_text()
+    assert run(["validate", farm]) == 0
+    assert run(["import", drawing, "--into", farm, rover]) == 0
+    assert run(["validate", farm]) == 0
+    assert "lane" in (tmp_path / "farm" / "mission.xmi").read_text()

@@ -14,6 +14,7 @@ from mmrs_core.pipeline import expand, ground, plan, read_models, valid_models
 from mmrs_core.plugins import load_plugins
 from mmrs_core.projects.choosing import assignment_of, read_mapping
 from mmrs_core.projects.importing import ImportOptions, ImportRefusedError, imported
+from mmrs_core.projects.notes import empty_project
 from mmrs_core.projects.team import robot_wanted, types_for
 
 CONTRIBUTIONS = load_plugins().contributions
@@ -393,6 +394,34 @@ def test_a_project_is_added_to_and_what_people_wrote_stays(tmp_path):
     assert all(line in after for line in kept)  # in their order
     again = replace(choices("pit=Terrain"), robots=())
     assert not imported(more, (), again, CONTRIBUTIONS, tmp_path, into=True).files
+
+
+@pytest.mark.parametrize("height", [None, 700.0])
+def test_a_project_without_a_place_gets_that_of_the_drawing_at_once_or_later(tmp_path, height):
+    heights = {} if height is None else {"heights": [height], "reference": HeightReference.SEA_LEVEL}
+    features = (drawn("Home", (0, 0), **heights), square("Meadow"), square("obstacle", 200))
+    for folder, orders in ((tmp_path / "one", [OPTIONS]), (tmp_path / "two", [ADDING, OPTIONS])):
+        saved(empty_project(folder, "farm", CONTRIBUTIONS))
+        for options in orders:
+            result = imported(features, (), options, CONTRIBUTIONS, folder, into=True)
+            models = read_models(saved(result) or folder, CONTRIBUTIONS)[0]
+        assert "the project had no place on the Earth; it gets the home of Kestrel: 42.35, 13.39" in result.notes
+        assert not has_errors(result.diagnostics)
+        assert [each.name for each in valid_models(folder, CONTRIBUTIONS)[0].mission.tasks] == ["Meadow"]
+        assert models.mission.team.robots[0].home.altitude == (height if len(orders) == 1 else None)
+        assert models.mission.altitudeReference == ("MSL" if height and len(orders) == 1 else "ORIGIN")
+
+
+def test_what_is_added_has_the_line_endings_of_its_file(tmp_path):
+    saved(made(square("Meadow"), folder=tmp_path))
+    for file in tmp_path.glob("*.xmi"):
+        file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
+    more = (square("Pasture", 300), square("obstacle", 200))
+    saved(imported(more, (), ADDING, CONTRIBUTIONS, tmp_path, into=True))
+    for file in tmp_path.glob("*.xmi"):
+        data = file.read_bytes()
+        assert (b"Pasture" in data) is not (b"obstacle" in data)
+        assert data.count(b"\r\n") == data.count(b"\n")
 
 
 def test_an_area_is_the_same_from_any_corner_and_either_way_round_but_a_line_is_not(tmp_path):
