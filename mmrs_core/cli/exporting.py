@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mmrs_core.scene import Frame, Scene
 
 _OF_MISSIONS = frozenset({Layer.AREAS, Layer.ELEMENTS, Layer.TASKS, Layer.HOMES})
+_STANDING = frozenset({Layer.RALLY_POINTS})
 _OF_FLIGHTS = frozenset({Layer.TRACKS, Layer.MEASUREMENTS, Layer.EVENTS})
 
 
@@ -93,7 +94,9 @@ def given_by(
         return Exported(source, mission.name, mission.frame, mission)
     title = mission.name if mission is not None else loaded.program.name
     made = Exported(source, title, loaded.program.frame, mission, loaded)
-    return _flown(session, made, logs, assume) if logs else _planned(session, made, assume)
+    if logs:
+        return _flown(session, made, logs, assume)
+    return _planned(session, made, assume) if not only or set(only) - _OF_MISSIONS - _STANDING else made
 
 
 def _planned(session: Session, given: Exported, assume: list[str] | None) -> Exported:

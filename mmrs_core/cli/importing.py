@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from mmrs_core.projects.building import Outcome
     from mmrs_core.projects.importing import ImportOptions, ImportResult
 
+_MANY = 10
+"""Features of one folder from which on they have one line if there is the same to be told of them."""
 _NOWHERE = Path("imported")
 """Stands for the folder of a project that is not written."""
 
@@ -201,10 +203,19 @@ def _imported(
 
 def _tell_all(result: ImportResult) -> None:
     """Print what became of every feature: those that became the same together, those left out at the end."""
-    order = list(dict.fromkeys(each.became for each in result.outcomes if each.became))
-    sorted_outcomes = sorted(result.outcomes, key=lambda each: (*order, "").index(each.became))
-    if sorted_outcomes:
-        for line in table(("became", "place", "name", "why"), list(map(_row, sorted_outcomes))):
+    order = [*dict.fromkeys(each.became for each in result.outcomes if each.became), ""]
+    alike: dict[object, list[Outcome]] = {}
+    for each in sorted(result.outcomes, key=lambda each: order.index(each.became)):
+        why = _row(each)[-1].replace(_pattern([each]), "")
+        key = (each.became, each.place.file, each.shape, each.folders, why, each.called in ("", each.name))
+        alike.setdefault(key, []).append(each)
+    rows = [
+        row
+        for group in alike.values()
+        for row in (map(_row, group) if len(group) < _MANY else [_row_of_all(group)])
+    ]
+    if rows:
+        for line in table(("became", "place", "name", "why"), rows):
             say(line)
     for note in result.notes:
         say(f"note: {note}")
@@ -216,6 +227,28 @@ def _row(outcome: Outcome) -> tuple[str, str, str, str]:
         name = f"{name} -> {outcome.called}" if name.strip() else f"-> {outcome.called}"
     why = "; ".join((outcome.reason or outcome.by, *outcome.notes))
     return outcome.became or "(left out)", str(outcome.place), name, why
+
+
+def _row_of_all(outcomes: Sequence[Outcome]) -> tuple[str, str, str, str]:
+    """Return the row of many that are in one folder, and of which the same is to be told."""
+    first = outcomes[0]
+    became, _, _, why = _row(first)
+    lines = [each.place.line for each in outcomes]
+    place = f"{first.place.file}:{min(lines)}-{max(lines)}" if any(lines) else first.place.file
+    names = [*dict.fromkeys(each.called or each.name for each in outcomes)]
+    ends = names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}"
+    folder = f" of '{first.folders[-1]}'" if first.folders else ""
+    name = f"{counted(len(outcomes), first.shape or 'item')}{folder}: {ends}"
+    return became, place, name, why.replace(_pattern([first]), _pattern(outcomes))
+
+
+def _pattern(outcomes: Sequence[Outcome]) -> str:
+    """Return what --as calls some features of one folder."""
+    from mmrs_core.projects.choosing import quoted
+
+    first = outcomes[0]
+    one = all(each.name == first.name for each in outcomes)
+    return quoted(first.name) if one else quoted("", first.folders)
 
 
 def _summary(outcomes: Sequence[Outcome]) -> str:
@@ -254,6 +287,7 @@ def _as_json(result: ImportResult, checked: bool, dry_run: bool) -> dict[str, ob
         "features": [
             {
                 "name": each.name,
+                "folders": each.folders,
                 "file": each.place.file,
                 "line": each.place.line,
                 "shape": each.shape,

@@ -186,12 +186,14 @@ def _close(stream: TextIO) -> None:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, widest: int = 200) -> Iterator[str]:
-    """Yield the lines of a table; cells longer than `widest` characters are cut.
+    """Yield the lines of a table; cells longer than `widest` characters are cut, except in the last column.
 
     >>> list(table(("a", "b"), [("1", "22")]))
     ['  a  b', '  1  22']
     """
-    cells = [[_short(cell, widest) for cell in row] for row in (head, *rows)]
+    cells = [
+        [*(_short(cell, widest) for cell in row[:-1]), " ".join(row[-1].split())] for row in (head, *rows)
+    ]
     widths = [max(len(row[column]) for row in cells) for column in range(len(head))]
     for row in cells:
         padded = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))

@@ -22,7 +22,7 @@ from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.session import Session
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import RobotKind, robot_kind_of
-from mmrs_core.errors import MmrsError
+from mmrs_core.errors import MmrsError, UnsupportedError
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pipeline import BehaviourContext, simulate
 from mmrs_core.resources import named, new_folders
@@ -108,8 +108,14 @@ def fly(
     Raises:
         UsageError: if there is no such backend, or it does not simulate or know its options, or no Choice
             asks for one of the conditions.
-        UnsupportedError: if it does not know what the behaviour holds.
+        UnsupportedError: if robot types are missing, or it does not know what the behaviour holds.
     """
+    used = dict.fromkeys(robot.type_name for robot in program.robots)
+    if missing := [name for name in used if name not in place.types]:
+        words = (
+            f"{program.name}: cannot be simulated without its robot types: {', '.join(map(repr, missing))}"
+        )
+        raise UnsupportedError(f"{words}; --robots gives their files, or put these into robots/ beside it")
 
     def make() -> SimulatedRun:
         with progress("simulating") as show:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Collection
 from json.decoder import JSONDecodeError
+from sys import get_int_max_str_digits
 
 from mmrs_core.drawings.sheet import Sheet
 
@@ -51,6 +52,10 @@ def _text_of(data: bytes, sheet: Sheet) -> str:
     return text
 
 
+class _FaultyObjectError(ValueError):
+    """What Python's decoder reads though it is not JSON."""
+
+
 class _Walk:
     def __init__(self, text: str, sheet: Sheet, walked: Collection[str]) -> None:
         self.text, self._sheet, self._walked = text, sheet, walked
@@ -83,8 +88,10 @@ class _Walk:
             self._sheet.refuse(f"not JSON: {fault.msg.lower()}", fault.lineno)
         except RecursionError:
             self._sheet.refuse("nested too deeply", line)
-        except ValueError as fault:
+        except _FaultyObjectError as fault:
             self._sheet.refuse(f"not JSON: {fault}", line)
+        except ValueError:  # Python's limit for whole numbers
+            self._sheet.refuse(f"a number has more than {get_int_max_str_digits()} digits", line)
         if isinstance(value, dict):
             value = JsonObject(value)
             value.line = line
@@ -129,9 +136,9 @@ def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
     if len(result) < len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f"'{twice}' is given twice in one object")
+        raise _FaultyObjectError(f"'{twice}' is given twice in one object")
     return result
 
 
 def _refuse_constant(name: str) -> object:
-    raise ValueError(f"{name} is not a number")
+    raise _FaultyObjectError(f"{name} is not a number")

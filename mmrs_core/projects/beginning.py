@@ -190,19 +190,20 @@ class Beginning:
     def _first_possible(self, task: TaskWanted, type_name: str) -> _Attempt | str:
         """Return the first attempt at a task of which there is a safe plan for one robot, or why none is."""
         kind = self.kind_of(task)
-        robot = RobotWanted("trial", type_name)
+        robot = RobotWanted(type_name, type_name)  # refusals call it so
         types = types_for([robot], (), self._contributions)
-        reasons: list[str] = []
+        reasons: list[tuple[bool, str]] = []
         for attempt in self._attempts(task, kind, types[type_name].element):
+            incomplete = False
             try:
-                made = self._made(_NOWHERE, "trial", [robot], types, [attempt])
+                made = self._made(_NOWHERE, "mission", [robot], types, [attempt])
                 against = self._reasons_against(made)
             except UsageError as error:
-                against = (str(error), *error.elements)
+                incomplete, against = True, error.elements or (str(error),)
             if not against:
                 return attempt
-            reasons.append("; ".join(against))
-        return reasons[0] if reasons else f"{kind.name} cannot be drawn"
+            reasons.append((incomplete, "; ".join(against)))
+        return min(reasons, key=lambda each: each[0])[1] if reasons else f"{kind.name} cannot be drawn"
 
     def _reasons_against(self, made: ImportResult) -> tuple[str, ...]:
         """Return why there is no safe plan of a project that is not written yet; empty if there is one."""

@@ -46,6 +46,7 @@ class Outcome:
         by: what decided.
         reason: why it was left out.
         path: of the element in its model.
+        folders: that the feature is in, outermost first.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Outcome:
     reason: str = ""
     notes: tuple[str, ...] = ()
     path: str = ""
+    folders: tuple[str, ...] = ()
 
 
 class UniqueNames:
@@ -124,7 +126,12 @@ class Builder:
         """Add the element of a feature; return what became of it."""
         kind = decision.kind
         told = Outcome(
-            feature.name, feature.place, shape_of(feature).value, by=decision.by, notes=decision.notes
+            feature.name,
+            feature.place,
+            shape_of(feature).value,
+            by=decision.by,
+            notes=decision.notes,
+            folders=feature.folders,
         )
         if kind.metaclass is None:
             return replace(told, reason=decision.reason)
@@ -157,7 +164,7 @@ class Builder:
         label = kind.symbol.label if kind.symbol is not None else kind.name
         name = self._names.unique(wanted if isinstance(wanted, str) else feature.name, label)
         element.name = name  # type: ignore[attr-defined]  # tasks and what is in a context have one
-        who = f"{feature.place}: {feature.name[:LONGEST_NAME]!r}"
+        who = ": ".join(filter(None, (str(feature.place), repr(feature.name[:LONGEST_NAME]))))
         self.faults.update(dict.fromkeys(f"{who}: {fault}" for fault in missing(element, kind)))
         self.comments[element] = comment_of(feature)
         path = self._append(element, kind, found.rings[0])

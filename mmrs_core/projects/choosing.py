@@ -134,8 +134,12 @@ def read_mapping(file: Path) -> Mapped:
     """
     try:
         found = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as fault:
-        raise UnreadableError(f"{file}: {fault}") from None
+    except UnicodeDecodeError:
+        raise UnreadableError(f"{file}: not UTF-8, as TOML has to be") from None
+    except tomllib.TOMLDecodeError as fault:
+        raise UnreadableError(f"{file}: not TOML: {fault}") from None
+    except (ValueError, RecursionError):  # Python's limits
+        raise UnreadableError(f"{file}: a number is too long, or arrays are nested too deeply") from None
     for name, table in found.items():
         if name not in ("as", "robots"):
             guess = nearest(name, ("as", "robots"))
@@ -250,16 +254,15 @@ def shape_of(feature: MapFeature) -> Geometry:
     return Geometry.AREA if feature.radius else feature.geometry
 
 
-def quoted(name: str) -> str:
-    """Return a pattern for a name, as it is typed into a shell.
+def quoted(name: str, folders: Sequence[str] = ()) -> str:
+    """Return a pattern for a name, or for all in a folder, as it is typed into a shell.
 
-    >>> quoted("neighbour's [old] barn"), quoted("")
-    ("'neighbour?s ?old? barn'", "'NAME'")
+    >>> quoted("neighbour's [old] barn"), quoted(""), quoted("", ["a", "trees"])
+    ("'neighbour?s ?old? barn'", "'NAME'", "'a/trees/*'")
     """
-    pattern = _UNTYPED.sub("?", name.strip())
-    return (
-        f"'{pattern[:_LONGEST]}{'*' if len(pattern) > _LONGEST else ''}'" if pattern.strip("?") else "'NAME'"
-    )
+    pattern = _UNTYPED.sub("?", "".join(f"{each.strip()}/" for each in folders) or name.strip())
+    rest = "*" if folders or len(pattern) > _LONGEST else ""
+    return f"'{pattern[:_LONGEST]}{rest}'" if pattern.strip("?/") else "'NAME'"
 
 
 def _fits(kind: Kind, feature: MapFeature) -> bool:

@@ -122,3 +122,32 @@ def test_a_refused_import_reports_its_features_too(drawing, capsys):
         assert result["error"]["message"]
         assert "Water trough" in {each["name"] for each in result["features"]}
         assert (result["written"], Path("farm").exists()) == (False, False)
+
+
+def test_many_that_are_the_same_have_one_line_and_json_has_every_one(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    point = (
+        '{{"type": "Feature", "properties": {{"name": "{}", "mmrs:role": "photo", "mmrs:folders": "{}"}}, '
+    )
+    point += '"geometry": {{"type": "Point", "coordinates": [11.34, 44.5]}}}}'
+    names = [(f"Kite {number}", "flown/photos") for number in range(10)] + [("Kite", "odd")]
+    features = ",\n".join(point.format(*each) for each in names)
+    Path("f.geojson").write_text(f'{{"type": "FeatureCollection", "features": [\n{features}]}}')
+    assert run(["import", "f.geojson", "--dry-run"]) == 0
+    lines = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
+    assert [[cell.strip() for cell in line if cell] for line in lines[1:3]] == [
+        [
+            "(left out)",
+            "f.geojson:2-11",
+            "10 points of 'photos': Kite 0 … Kite 9",
+            "it is a photo that was taken; --as 'flown/photos/*'=task makes a task of it",
+        ],
+        [
+            "(left out)",
+            "f.geojson:12",
+            "Kite",
+            "it is a photo that was taken; --as 'Kite'=task makes a task of it",
+        ],
+    ]
+    assert run(["import", "f.geojson", "--dry-run", "--json"]) == 0
+    assert [each["name"] for each in told(capsys)["features"]] == [name for name, _ in names]

@@ -79,8 +79,9 @@ def test_a_plan_is_told_as_values_too(scene, plan):
     assert told["tasks"][1] == {"name": "fork", "begin": 31.0, "end": 31.0}
 
 
-def test_long_cells_are_cut():
-    assert list(table(("a",), [("x" * 50,)], widest=10)) == ["  a", "  xxxxxxxxx…"]
+def test_long_cells_are_cut_but_for_the_last():
+    row = "  xxxxxxxxx…  " + "y" * 50
+    assert list(table(("a", "b"), [("x" * 50, "y" * 50)], widest=10)) == [f"  a{'b':>12}", row]
 
 
 def test_line_breaks_in_names_do_not_break_a_table():

@@ -405,7 +405,9 @@ def test_a_project_without_a_place_gets_that_of_the_drawing_at_once_or_later(tmp
         for options in orders:
             result = imported(features, (), options, CONTRIBUTIONS, folder, into=True)
             models = read_models(saved(result) or folder, CONTRIBUTIONS)[0]
-        assert "the project had no place on the Earth; it gets the home of Kestrel: 42.35, 13.39" in result.notes
+        assert (
+            "the project had no place on the Earth; it gets the home of Kestrel: 42.35, 13.39" in result.notes
+        )
         assert not has_errors(result.diagnostics)
         assert [each.name for each in valid_models(folder, CONTRIBUTIONS)[0].mission.tasks] == ["Meadow"]
         assert models.mission.team.robots[0].home.altitude == (height if len(orders) == 1 else None)

@@ -33,11 +33,11 @@ def mmrs_targets() -> Iterable[Target]:
 def mmrs_drawing_readers() -> Iterable[DrawingReader]:
     """Contribute readers of missions of ground stations."""
     from mmrs_core.contributions.drawings import DrawingReader
-    from mmrs_mavlink.plugin.plans import drawn_plans as plans
+    from mmrs_mavlink.plugin.plans import drawn_lists, drawn_plans
 
     return (
-        DrawingReader("QGroundControl plan", (".plan",), plans.recognise_plan, plans.read_plan),
-        DrawingReader("waypoints", (".waypoints", ".wpl"), plans.recognise_list, plans.read_list),
+        DrawingReader("QGroundControl plan", (".plan",), drawn_plans.recognise_plan, drawn_plans.read_plan),
+        DrawingReader("waypoints", (".waypoints", ".wpl"), drawn_lists.recognise_list, drawn_lists.read_list),
     )
 
 

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from mmrs_core.drawings.drawing import Geometry, HeightReference, Role
 from mmrs_core.errors import UnreadableError
-from mmrs_mavlink.plugin.plans.drawn_plans import read_list, read_plan, recognise_list, recognise_plan
+from mmrs_mavlink.plugin.plans.drawn_lists import read_list, recognise_list
+from mmrs_mavlink.plugin.plans.drawn_plans import read_plan, recognise_plan
 
 FIELD = [[47.0, 8.0], [47.0, 8.01], [47.01, 8.01]]
 
@@ -107,6 +108,43 @@ def test_waypoints_are_a_path_between_surveys_and_a_point_where_there_is_one():
     assert [each.reason for each in drawing.left_out] == ["at the same position as waypoint 4"]
 
 
+MIXED = [
+    item(16, 0, 0, 0, 0, 47 + 0.01 * n, 8, up, frame=frame)
+    for n, (up, frame) in enumerate([(30, 3), (440, 0), (35, 10), (460, 5)])
+]
+
+
+def test_waypoints_with_heights_in_several_frames_are_one_line_above_home():
+    drawing = read_plan(plan(*MIXED), "a.plan")
+    _, path = drawing.features
+    assert (path.geometry, path.reference) == (Geometry.LINE, HeightReference.HOME)
+    assert path.heights[0].tolist() == [30, 40, 35, 60]
+    assert [(each.what, each.reason) for each in drawing.left_out] == [
+        (
+            "frames of items 2, 3, 4",
+            "their heights above mean sea level, above the ground are counted from home instead",
+        )
+    ]
+
+
+def test_waypoints_are_runs_of_one_frame_where_the_height_of_home_is_not_known():
+    data = plan(*MIXED[:2], MIXED[3], MIXED[2]).replace(b"400.0", b"null")
+    drawing = read_plan(data, "a.plan")
+    assert [(each.geometry, each.name, each.reference.value) for each in drawing.features] == [
+        (Geometry.POINT, "planned home", "no height"),
+        (Geometry.POINT, "waypoint 1", "the home position"),
+        (Geometry.LINE, "waypoints 2 to 3", "mean sea level"),
+        (Geometry.POINT, "waypoint 4", "the ground"),
+    ]
+    assert [(each.what, each.reason) for each in drawing.left_out] == [
+        (
+            "line from item 1 to item 2",
+            "their heights are in frames 3 and 0, and that of home is not known",
+        ),
+        ("line from item 3 to item 4", "their heights are in frames 5 and 10, and that of home is not known"),
+    ]
+
+
 def test_waypoints_that_mmrs_planned_are_no_tasks():
     data = plan(item(16, 0, 0, 0, 0, 47, 8, 9), item(16, 0, 0, 0, 0, 47, 8.1, 9), groundStation="MMRS")
     assert read_plan(data, "a.plan").features[1].role is Role.PATH
@@ -180,7 +218,11 @@ def test_lists_of_fences_and_rally_points_are_shapes():
     [
         (b"QGC WPL 120\n", r"^a\.waypoints:1: the first line is not 'QGC WPL 110'"),
         (listed("0 1 0 16"), r"^a\.waypoints:2: 4 values instead of 12"),
-        (listed("0 1 0 x 0 0 0 0 47 8 400 1"), r"^a\.waypoints:2: not a row of numbers"),
+        (listed("0 1 0 x 0 0 0 0 47 8 400 1"), r"^a\.waypoints:2: 'x' is not a number"),
+        (
+            listed("0 1 0 1e999 0 0 0 0 47 8 400 1"),
+            r"^a\.waypoints:2: 1e999 is no number of an item, a frame or",
+        ),
         (listed(HOME, "1 0 3 16 0 0 0 0 8.0 47.0 20 1"), r"^a\.waypoints:3: .* seem to be swapped"),
         (listed("0 0 0 5002 3 0 0 0 47 8 0 1"), r"^a\.waypoints:2: .* 3 corners of it are expected"),
     ],

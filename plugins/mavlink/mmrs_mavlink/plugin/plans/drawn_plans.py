@@ -1,51 +1,19 @@
-"""Missions of ground stations as drawings: plans of QGroundControl, and lists of waypoints.
+"""Plans of QGroundControl as drawings.
 
-The formats are described at https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
-and https://mavlink.io/en/file_formats/.
+The format is described at https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
-
-import numpy as np
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, Property, Role
 from mmrs_core.drawings.json_text import JsonObject, read_object
 from mmrs_core.drawings.sheet import DrawnSubject, FeatureTraits, Sheet, property_of
-from mmrs_mavlink.plugin.plans.items import (
-    ABSOLUTE,
-    FENCE_EXCLUSION,
-    LAND,
-    LOITER_TIME,
-    LOITER_UNLIMITED,
-    RALLY_POINT,
-    RELATIVE,
-    TAKE_OFF,
-    WAYPOINT,
-)
+from mmrs_mavlink.plugin.plans.waypoint_paths import AXES, DrawnItem, WaypointPath
 
-AXES = "missions have the latitude first"
-SPLINE, LOITER_TURNS, LOITER_TO_ALTITUDE, ARC, PLACE_PAYLOAD = 82, 18, 31, 36, 94
-PASSED = frozenset(
-    (
-        *(WAYPOINT, SPLINE, ARC, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, LOITER_TO_ALTITUDE),
-        PLACE_PAYLOAD,
-    )
-)
-"""Commands whose place a vehicle goes to; one at latitude and longitude 0 is where it is."""
-WAITED = (LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, PLACE_PAYLOAD)
-LAUNCHED = frozenset((TAKE_OFF, LAND, 84, 85, 20))
-"""Commands to take off, to land, and to return; the first two as multicopters and as VTOL do it."""
-FENCE_INCLUSION, CIRCLE_INCLUSION, CIRCLE_EXCLUSION = 5001, 5003, 5004
-FRAMES = {
-    **dict.fromkeys((ABSOLUTE, 5), HeightReference.SEA_LEVEL),
-    **dict.fromkeys((RELATIVE, 6), HeightReference.HOME),
-    **dict.fromkeys((10, 11), HeightReference.GROUND),
-}
 WALKED = ("mission", "items", "geoFence", "polygons", "circles", "rallyPoints", "points")
 SETTINGS = {
     "DistanceToSurface": ("altitude", 1.0),
@@ -63,16 +31,6 @@ COMPLEX = {
     "StructureScan": (Geometry.AREA, Role.STRUCTURE, "polygon"),
 }
 SHAPES = ("polygon", "polyline", "TransectStyleComplexItem", "type", "complexItemType", "CameraCalc")
-FIELDS = 12
-CIRCLES = (CIRCLE_INCLUSION, CIRCLE_EXCLUSION)
-AROUND = {
-    FENCE_INCLUSION: (Geometry.AREA, Role.INCLUSION),
-    FENCE_EXCLUSION: (Geometry.AREA, Role.FORBIDDEN),
-    CIRCLE_INCLUSION: (Geometry.POINT, Role.INCLUSION),
-    CIRCLE_EXCLUSION: (Geometry.POINT, Role.FORBIDDEN),
-    RALLY_POINT: (Geometry.POINT, Role.RALLY_POINT),
-}
-HEADER = "QGC WPL 110"
 OURSELVES = "MMRS"
 """The ground station of plans that MMRS writes."""
 MAIN = {"fileType", "version", "groundStation", "mission", "geoFence", "rallyPoints"}
@@ -84,11 +42,6 @@ def recognise_plan(data: bytes, file: str) -> bool:
     return beginning.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"{" and bool(
         re.search(rb'"fileType"\s*:\s*"Plan"', beginning + data[-10_000:])
     )
-
-
-def recognise_list(data: bytes, file: str) -> bool:
-    """Return whether it is a list of waypoints."""
-    return data.removeprefix(b"\xef\xbb\xbf").startswith(b"QGC WPL")
 
 
 def read_plan(data: bytes, file: str) -> Drawing:
@@ -152,13 +105,17 @@ class _PlanReader:
 
     def _mission(self, mission: JsonObject, role: Role) -> None:
         home = mission.get("plannedHomePosition")
+        height = None
+        if isinstance(home, list) and len(home) == 3 and not isinstance(home[2], bool):
+            height = float(home[2]) if isinstance(home[2], int | float) else None
+            home = home[:2] if home[2] is None else home  # the terrain there was not known yet
         if isinstance(home, list) and None not in home:
             self._add(
                 Geometry.POINT, [[home]], "planned home", mission.line, Role.HOME, HeightReference.SEA_LEVEL
             )
         elif home is not None:
             self.sheet.leave_out("planned home", "it is without a position", mission.line)
-        path = WaypointPath(self.sheet, role)
+        path = WaypointPath(self.sheet, role, height)
         for number, item in enumerate(self._list(mission, "items"), start=1):
             if not isinstance(item, JsonObject):
                 self.sheet.refuse(f"item {number} is not an object", mission.line)
@@ -213,17 +170,6 @@ class _PlanReader:
             self.sheet.leave_out("breach return point", "not of a mission here", fence.line)
 
 
-class DrawnItem(NamedTuple):
-    """An item of a mission: `place` is latitude, longitude and height, `first` its first parameter."""
-
-    command: int
-    frame: int
-    place: list[float]
-    number: int
-    line: int
-    first: float = 0.0
-
-
 def _flat(item: Mapping[str, object]) -> Iterator[tuple[str, object]]:
     """Yield the settings of a complex item, with those that are of its transects and its camera."""
     for key, value in item.items():
@@ -247,136 +193,3 @@ def _above_sea(settings: Mapping[str, Property]) -> bool:
 
 def _side(fence: Mapping[str, object]) -> Role:
     return Role.INCLUSION if fence.get("inclusion") else Role.FORBIDDEN
-
-
-class WaypointPath:
-    """Adds the places that a vehicle goes to one after the other; another height reference begins a path.
-
-    Args:
-        role: of the paths: those that MMRS planned, or waypoints that people drew.
-    """
-
-    def __init__(self, sheet: Sheet, role: Role) -> None:
-        self._sheet, self._role = sheet, role
-        self._part: list[DrawnItem] = []
-
-    def add(self, row: DrawnItem) -> None:
-        """Continue the path, or note why an item does not belong to one."""
-        if row.command in LAUNCHED:
-            reason = "robots take off, return and land without a task"
-            self._sheet.leave_out(f"item {row.number}", reason, row.line)
-        elif row.command not in PASSED or row.place[:2] == [0.0, 0.0]:
-            what = "states no position" if row.command in PASSED else "does not move a vehicle to a place"
-            self._sheet.leave_out(f"item {row.number}", f"{_command(row.command)} {what}", row.line)
-        else:
-            if self._part and FRAMES.get(self._part[-1].frame) is not FRAMES.get(row.frame):
-                self.end()
-            self._part.append(row)
-            if row.command in WAITED or (row.command in (WAYPOINT, SPLINE) and row.first > 0.0):
-                reason = "what a robot does there is a task of its own"
-                self._sheet.leave_out(f"waiting at item {row.number}", reason, row.line)
-
-    def end(self) -> None:
-        """Add the path so far; one in the same place throughout is a point."""
-        part, self._part = self._part, []
-        if not part:
-            return
-        first = part[0]
-        reference = FRAMES.get(first.frame, HeightReference.NONE)
-        many = len({tuple(row.place[:2]) for row in part}) > 1
-        what = f"waypoints {first.number} to {part[-1].number}" if many else f"waypoint {first.number}"
-        if reference is HeightReference.NONE:
-            self._sheet.leave_out(f"heights of {what}", f"frame {first.frame} is not read", first.line)
-        shape = Geometry.LINE if many else Geometry.POINT
-        _add(self._sheet, shape, part if many else part[:1], what, self._role, reference)
-        if not many and len(part) > 1:
-            where = f"items {part[1].number} to {part[-1].number}"
-            self._sheet.leave_out(where, f"at the same position as {what}", part[1].line)
-
-
-def _command(number: int) -> str:
-    from mmrs_mavlink.services.commands import name_of
-
-    name = name_of(number)
-    return name if str(number) in name else f"command {number} ({name})"
-
-
-def _add(
-    sheet: Sheet,
-    shape: Geometry,
-    rows: Sequence[DrawnItem],
-    what: str,
-    role: Role,
-    reference: HeightReference = HeightReference.NONE,
-    radius: float | None = None,
-) -> None:
-    traits: FeatureTraits = {"name": what, "role": role, "radius": radius}
-    subject = DrawnSubject(what, Place(sheet.file, rows[0].line), traits)
-    ring = np.array([row.place for row in rows], dtype=np.float64)
-    sheet.add(shape, [ring if reference is not HeightReference.NONE else ring[:, :2]], subject, reference)
-
-
-def read_list(data: bytes, file: str) -> Drawing:
-    """Return home (row 0, as ArduPilot has it), waypoints as a path, and fences and rally points.
-
-    Raises:
-        UnreadableError: with the line of the first fault.
-    """
-    sheet = Sheet(data, file, AXES)
-    lines = data.decode("utf-8-sig", "replace").splitlines()
-    if lines[0].strip() != HEADER:
-        sheet.refuse(f"the first line is not '{HEADER}'", 1)
-    rows = [_row_of(line, number, sheet) for number, line in enumerate(lines[1:], start=2) if _holds(line)]
-    if rows and rows[0].number == 0 and rows[0].command == WAYPOINT:
-        home = rows.pop(0)
-        _refuse_swapped(home, rows, sheet)
-        _add(sheet, Geometry.POINT, [home], "home", Role.HOME, HeightReference.SEA_LEVEL)
-    path = WaypointPath(sheet, Role.WAYPOINT)
-    for row in rows:
-        if row.command not in AROUND:
-            path.add(row)
-    path.end()
-    around = [row for row in rows if row.command in AROUND]
-    while around:
-        row = around[0]
-        shape, role = AROUND[row.command]
-        what = f"{role.value} {row.number}"
-        count = int(row.first) if shape is Geometry.AREA and 0 < row.first < 1e6 else 1
-        corners, around = around[:count], around[count:]
-        if len(corners) < count or any(
-            (each.command, each.first) != (row.command, row.first) for each in corners
-        ):
-            sheet.refuse(f"{what}: {count} corners of it are expected one after the other", row.line)
-        radius = row.first if row.command in CIRCLES and 0.0 < row.first < 1e6 else None
-        rally = (
-            FRAMES.get(row.frame, HeightReference.NONE) if role is Role.RALLY_POINT else HeightReference.NONE
-        )
-        _add(sheet, shape, corners, what, role, rally, radius)
-    return sheet.drawing()
-
-
-def _refuse_swapped(home: DrawnItem, rows: Sequence[DrawnItem], sheet: Sheet) -> None:
-    """Refuse waypoints that are near home if latitude and longitude are exchanged."""
-    at = np.array(home.place[:2])
-    for row in rows:
-        place = np.array(row.place[:2])
-        if place.any() and np.abs(place - at).max() > 1.0 and np.abs(place[::-1] - at).max() < 0.1:
-            sheet.refuse(
-                f"item {row.number}: latitude and longitude seem to be swapped against home", row.line
-            )
-
-
-def _row_of(text: str, line: int, sheet: Sheet) -> DrawnItem:
-    cells = text.split()
-    if len(cells) != FIELDS:
-        sheet.refuse(f"{len(cells)} values instead of {FIELDS}", line)
-    try:
-        number, _, frame, command = (int(float(cell)) for cell in cells[:4])
-        first, _, _, _, *place = (float(cell) for cell in cells[4:11])
-    except (ValueError, OverflowError) as fault:
-        sheet.refuse(f"not a row of numbers: {str(fault)[:60]}", line)
-    return DrawnItem(command, frame, place, number, line, first)
-
-
-def _holds(line: str) -> bool:
-    return bool(line.strip()) and not line.startswith("#")
