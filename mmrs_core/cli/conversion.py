@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
+from xml.parsers import expat
 
 import typer
 
@@ -25,6 +26,7 @@ from mmrs_core.languages.references.by_name import ReferenceNames
 from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.references.project import files_beside, is_beside
 from mmrs_core.languages.writing import to_json, to_xmi
+from mmrs_core.languages.xmi.events import read_bytes
 
 if TYPE_CHECKING:
     from mmrs_core.cli.session import Session
@@ -49,6 +51,7 @@ class Converted:
         elements: how many it has.
         beside: files that it refers to and that are not converted with it.
         names: what its references became, where they were to become names.
+        comments: how many of its source are left out.
     """
 
     source: Path
@@ -58,6 +61,7 @@ class Converted:
     elements: int
     beside: tuple[Path, ...] = ()
     names: ReferenceNames | None = None
+    comments: int = 0
 
 
 def form_of(file: Path) -> Form:
@@ -97,6 +101,17 @@ def targets_in(directory: Path, given: Sequence[Path], form: Form | None) -> dic
             raise UnreadableError(f"{file}: would be written to {target}, and so would {twin}")
         targets[file] = target
     return targets
+
+
+def comments_in(file: Path) -> int:
+    """Return how many comments a model has, which are none of its elements; JSON has no comments."""
+    if form_of(file) is Form.JSON:
+        return 0
+    found: list[str] = []
+    parser = expat.ParserCreate()
+    parser.CommentHandler = found.append
+    parser.Parse(read_bytes(file), True)
+    return len(found)
 
 
 def refuse_existing(targets: Sequence[Path], force: bool) -> None:
@@ -188,7 +203,7 @@ def converted_together(
         names = names_for(target, roots, everywhere, registry) if by_name else None
         text = text_of(roots, registry, file, target, form, exported, names)
         count = sum(1 for _ in models[file].elements())
-        made.append(Converted(file, target, form, text, count, tuple(beside), names))
+        made.append(Converted(file, target, form, text, count, tuple(beside), names, comments_in(file)))
     return tuple(made), faults
 
 

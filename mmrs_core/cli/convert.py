@@ -14,6 +14,7 @@ from mmrs_core.cli.conversion import (
     Converted,
     Form,
     SchemaLocation,
+    comments_in,
     converted_together,
     form_of,
     is_followed,
@@ -78,8 +79,9 @@ def convert(
 ) -> int:
     """Convert models between XMI and JSON.
 
-    The conversion is lossless. Models converted together keep their references to each other; all of them are
-    written, or none. References by name become paths, which Eclipse reads, unless --names is given.
+    The conversion is lossless but for comments, which are no part of a model: they are left out, and counted.
+    Models converted together keep their references to each other; all of them are written, or none.
+    References by name become paths, which Eclipse reads, unless --names is given.
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """
@@ -118,6 +120,7 @@ def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
     for each in made:
         say(f"written: {each.target} ({counted(each.elements, 'element')})")
         _tell_of_names(each.names, each.target)
+        _tell_of_comments(each.source, each.comments)
     for file in dict.fromkeys(file for each in made for file in each.beside):
         words = "referred to, and not converted: references lead to where it is"
         lost = (
@@ -134,6 +137,7 @@ def _as_json(made: Converted) -> dict[str, object]:
         "form": made.form.value,
         "elements": made.elements,
         "refers_to": made.beside,
+        "comments_left_out": made.comments,
         **_names_as_json(made.names),
     }
 
@@ -155,20 +159,28 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
     linked_roots = [each.roots for each in found.model.linked]
     names = names_for(place, roots, [roots, *linked_roots], registry) if asked.by_name else None
     text = text_of(roots, registry, source, place, form, asked.exported, names)
-    count = sum(1 for _ in found.model.elements())
+    count, comments = sum(1 for _ in found.model.elements()), comments_in(source)
     if target is None:
         say_file(text)
         _tell_of_names(names, source)
+        _tell_of_comments(source, comments)
         return 0
     replace_file(target, text)
     if asked.json:
         said = {"file": target, "form": form.value, "elements": count, **_names_as_json(names)}
+        said["comments_left_out"] = comments
         say_json({**said, "diagnostics": faults})
     else:
         say(f"written: {target} ({counted(count, 'element')})")
         _tell_of_names(names, target)
+        _tell_of_comments(source, comments)
     _tell_of_kept_links(found, source, target)
     return 0
+
+
+def _tell_of_comments(file: Path, count: int) -> None:
+    if count:
+        tell(f"{file}: note: {counted(count, 'comment')} left out: no part of the model")
 
 
 def _tell_of_names(names: ReferenceNames | None, file: Path) -> None:

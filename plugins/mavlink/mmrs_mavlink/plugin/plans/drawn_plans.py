@@ -105,9 +105,9 @@ class _PlanReader:
 
     def _mission(self, mission: JsonObject, role: Role) -> None:
         home = mission.get("plannedHomePosition")
-        height = None
+        above_sea = None
         if isinstance(home, list) and len(home) == 3 and not isinstance(home[2], bool):
-            height = float(home[2]) if isinstance(home[2], int | float) else None
+            above_sea = float(home[2]) if isinstance(home[2], int | float) else None
             home = home[:2] if home[2] is None else home  # the terrain there was not known yet
         if isinstance(home, list) and None not in home:
             self._add(
@@ -115,7 +115,7 @@ class _PlanReader:
             )
         elif home is not None:
             self.sheet.leave_out("planned home", "it is without a position", mission.line)
-        path = WaypointPath(self.sheet, role, height)
+        path = WaypointPath(self.sheet, role, above_sea)
         for number, item in enumerate(self._list(mission, "items"), start=1):
             if not isinstance(item, JsonObject):
                 self.sheet.refuse(f"item {number} is not an object", mission.line)
