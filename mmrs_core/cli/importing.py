@@ -132,7 +132,7 @@ def import_drawings(
     say(_summary(result.outcomes))
     if not team:
         tell("note: no robots yet, so the project was not checked; --robot NAME=TYPE adds one")
-    for file in result.files if not dry_run else ():
+    for file in [*result.files][::-1] if not dry_run else ():
         say(f"written: {file}")
     if dry_run or not result.files:
         say("nothing written")
@@ -164,13 +164,13 @@ def _options(
     wanted = tuple(team.values())
     used = types_for(wanted, types, contributions)
     names = ", ".join(file.name for file in files)
-    in_water = any(medium_of(used[each.type].element, contributions) == "water" for each in wanted)
+    media = {medium_of(used[each.type].element, contributions) for each in wanted}
     return ImportOptions(
         choices=(*kept.choices, *(assignment_of(text, f"--as '{text}'") for text in assignments)),
         robots=wanted,
         types=used,
         title=files[0].stem,
-        complete=completed(files[0].stem, wanted, in_water=in_water, made=f"imported from {names}"),
+        complete=completed(files[0].stem, media, made=f"imported from {names}"),
     )
 
 

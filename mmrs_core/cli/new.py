@@ -316,7 +316,7 @@ def _list(contributions: Contributions, json: bool) -> int:
 
 
 def _tell_next(folder: Path, made: ImportResult, empty: bool) -> None:
-    for file in made.files:
+    for file in [*made.files][::-1]:
         say(f"written: {file}")
     where = quote(str(folder))
     if empty:

@@ -18,6 +18,7 @@ from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.grounding.robots import robot_type_of
 from mmrs_core.languages.naming import nearest
 from mmrs_core.pipeline import refusals
+from mmrs_core.projects.attributes import decided
 from mmrs_core.projects.choosing import Assignment
 from mmrs_core.projects.importing import ImportOptions, ImportResult, imported
 from mmrs_core.projects.kinds import ImportKinds, Kind
@@ -265,14 +266,14 @@ class Beginning:
             for feature, each in zip(features, attempts, strict=True)
         )
         homes = self._homes(robots)
-        in_water = any(self._medium(types[each.type].element) == "water" for each in robots)
+        media = {self._medium(types[each.type].element) for each in robots}
         options = ImportOptions(
             choices=assignments,
             robots=homes,
             types=types,
             altitude=0.0,
             title=title,
-            complete=completed(title, homes, in_water=in_water),
+            complete=completed(title, media),
         )
         made = imported(features, (), options, self._contributions, folder)
         left = next((each for each in made.outcomes if not each.became), None)
@@ -315,7 +316,7 @@ class Beginning:
                 (np.full(len(ring), each.height),) if at else (),
                 HeightReference.HOME if at else HeightReference.NONE,
                 name=label,
-                description="laid beside the homes: move it to where it belongs",
+                description="\n".join(_comment_on(each)),
                 folders=(f"task {number}",),
                 properties=_height_of(each),
             )
@@ -337,6 +338,18 @@ def _cells(medium: Medium, count: int) -> Iterator[tuple[float, float]]:
         for column in aside
     ]
     yield from sorted(corners, key=lambda at: hypot(at[0] + width / 2, at[1] + depth / 2))
+
+
+def _comment_on(attempt: _Attempt) -> Iterator[str]:
+    """Yield what a task does, and what its attributes mean."""
+    metaclass = attempt.kind.metaclass
+    assert metaclass is not None  # of tasks
+    yield f"{metaclass.documentation} Laid beside the homes: move it to where it belongs."
+    symbol, names = attempt.kind.symbol, decided(attempt.kind, attempt.attributes)
+    initial = {name: True for name in (symbol.initial if symbol is not None else ()) if name not in names}
+    for name, value in {**initial, **attempt.attributes, **_height_of(attempt)}.items():
+        if value != ("",) and name in metaclass.by_name:
+            yield f"{name}: {metaclass.by_name[name].documentation}"
 
 
 def _height_of(attempt: _Attempt) -> dict[str, float]:

@@ -49,7 +49,8 @@ class ImportOptions:
         altitude: height above the origin of tasks that are drawn without one, for robots that fly; metres.
         simplify: metres by which simplified borders may be off; None: none is simplified.
         title: name of a new mission.
-        complete: sets what else a new mission and its context begin with; returns comments on elements.
+        complete: sets what else a new mission, with its robots, and its context begin with; returns
+            comments on elements.
     """
 
     choices: tuple[Assignment, ...] = ()
@@ -146,11 +147,12 @@ def imported(
     languages = contributions.languages
     around = _surroundings(target, levels, homes, options, contributions)
     builder = Builder(target.mission, target.context, languages, names, around)
-    if not into and options.complete is not None:
-        builder.comments |= options.complete(target.mission, target.context, languages)
     team = target.mission.team  # type: ignore[attr-defined]  # a mission
     old = len(team.robots)
     added_types = _add_robots(target, homes, options, builder, names, languages.create)
+    if not into and options.complete is not None:
+        completed = options.complete(target.mission, target.context, languages)
+        builder.comments = {**completed, **builder.comments}
     outcomes = _built(builder, features, decisions, team, old)
     rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)
     for each, decision in zip(lost, meant, strict=True):

@@ -103,7 +103,7 @@ def test_several_robots_have_names_of_their_own(mmrs, tmp_path):
 def test_the_comments_say_what_to_check_before_a_flight(mmrs, tmp_path):
     assert plans(mmrs, tmp_path / "field", ["Freefly Astro LR1"], ["PhotoGridTask"]) == ""
     mission = (tmp_path / "field" / "mission.xmi").read_text()
-    for each in ("positionError", "minimumSeparation", "reserve", "altitudes", "move it to where it belongs"):
+    for each in ("positionError", "minimumSeparation", "reserve", "altitude", "move it to where it belongs"):
         assert each in mission
     assert "forbiddenAreas" in (tmp_path / "field" / "context.xmi").read_text()
 
