@@ -24,7 +24,7 @@ from mmrs_core.projects.heights import Levels, levels_at
 from mmrs_core.projects.kinds import MISSION, ImportKinds
 from mmrs_core.projects.likeness import position_of
 from mmrs_core.projects.shapes import UnfitError, shape
-from mmrs_core.projects.target import Target, blank, opened
+from mmrs_core.projects.target import ImportTarget, blank, opened
 from mmrs_core.projects.team import Home, RobotWanted, TypeFile, homes_for, medium_of
 
 if TYPE_CHECKING:
@@ -179,7 +179,7 @@ def _unfit(feature: MapFeature) -> str:
     return ""
 
 
-def _levels(target: Target, homes: Sequence[Home]) -> Levels:
+def _levels(target: ImportTarget, homes: Sequence[Home]) -> Levels:
     """Return what heights count from: the project's origin, or its first home, which begins it."""
     frame = frame_of(target.mission, target.context)
     if frame.latitude is not None:
@@ -195,7 +195,7 @@ def _levels(target: Target, homes: Sequence[Home]) -> Levels:
 
 
 def _surroundings(
-    target: Target,
+    target: ImportTarget,
     levels: Levels,
     homes: Sequence[Home],
     options: ImportOptions,
@@ -220,7 +220,7 @@ def _names_of_types(mission: Element) -> list[str]:
 
 
 def _add_robots(
-    target: Target,
+    target: ImportTarget,
     homes: Sequence[Home],
     options: ImportOptions,
     builder: Builder,
@@ -300,7 +300,7 @@ def _at_source(fault: Diagnostic, places: Mapping[str, Place]) -> Diagnostic:
     return fault if place is None else replace(fault, place=place)
 
 
-def _notes(target: Target, homes: Sequence[Home], ordered: int, *, begun: bool) -> Iterator[str]:
+def _notes(target: ImportTarget, homes: Sequence[Home], ordered: int, *, begun: bool) -> Iterator[str]:
     origin = "the origin" if target.texts and not begun else "the first robot's home"
     if begun and homes:
         latitude, longitude = homes[0].position

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class Target:
+class ImportTarget:
     """A new project, or one with its files.
 
     Attributes:
@@ -85,16 +85,16 @@ class Target:
         return models, faults if models is None else (*faults, *check_models(models, contributions))
 
 
-def blank(folder: Path, title: str, contributions: Contributions) -> Target:
+def blank(folder: Path, title: str, contributions: Contributions) -> ImportTarget:
     """Return a project without content, which is to be made."""
     create = contributions.languages.create
     name = UniqueNames(()).unique(title, "imported mission")
     mission = create(MISSION, "Mission", name=name, team=create(MISSION, "Team"))
     files = {each: folder / f"{each}.xmi" for each in ("mission", "context")}
-    return Target(mission, create(CONTEXT, "Context", name=name), files)
+    return ImportTarget(mission, create(CONTEXT, "Context", name=name), files)
 
 
-def opened(folder: Path, contributions: Contributions) -> Target:
+def opened(folder: Path, contributions: Contributions) -> ImportTarget:
     """Return the project of a folder or mission file.
 
     Raises:
@@ -112,4 +112,4 @@ def opened(folder: Path, contributions: Contributions) -> Target:
     texts = {file: read_bytes(file) for file in (mission_file, context_file) if file is not None}
     known = frozenset((each.code, each.message) for each in (*faults, *check_models(models, contributions)))
     files = {"mission": mission_file, "context": beside}
-    return Target(models.mission, context, files, robots, models.robots, texts, known)
+    return ImportTarget(models.mission, context, files, robots, models.robots, texts, known)
