@@ -79,8 +79,8 @@ def convert(
 ) -> int:
     """Convert models between XMI and JSON.
 
-    The conversion is lossless but for comments, which are no part of a model: they are left out, and counted.
-    Models converted together keep their references to each other; all of them are written, or none.
+    The conversion is lossless but for comments, which do not belong to a model: they are left out, and
+    counted. Models converted together keep their references to each other; all of them are written, or none.
     References by name become paths, which Eclipse reads, unless --names is given.
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
@@ -180,7 +180,7 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
 
 def _tell_of_comments(file: Path, count: int) -> None:
     if count:
-        tell(f"{file}: note: {counted(count, 'comment')} left out: no part of the model")
+        tell(f"{file}: note: {counted(count, 'comment')} left out: they do not belong to the model")
 
 
 def _tell_of_names(names: ReferenceNames | None, file: Path) -> None:

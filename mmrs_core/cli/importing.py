@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mmrs_core.projects.importing import ImportOptions, ImportResult
 
 _MANY = 10
-"""Features of one folder from which on they have one line if there is the same to be told of them."""
+"""Features of one folder that share a line if the report says the same of each."""
 _NOWHERE = Path("imported")
 """Stands for the folder of a project that is not written."""
 
@@ -230,7 +230,7 @@ def _row(outcome: Outcome) -> tuple[str, str, str, str]:
 
 
 def _row_of_all(outcomes: Sequence[Outcome]) -> tuple[str, str, str, str]:
-    """Return the row of many that are in one folder, and of which the same is to be told."""
+    """Return the row of many features of one folder of which the report says the same."""
     first = outcomes[0]
     became, _, _, why = _row(first)
     lines = [each.place.line for each in outcomes]

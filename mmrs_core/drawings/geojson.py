@@ -122,7 +122,8 @@ class _GeoJsonReader:
         member = "geometries" if type == "GeometryCollection" else "coordinates"
         parts = geometry.get(member)
         if member == "coordinates" and type not in PARTS:
-            self.sheet.refuse(f"{what}: {str(type)[:40]!r} is not a type of geometry", line)
+            kind = "no 'type'" if type is None else f"{str(type)[:40]!r} is not a type of geometry"
+            self.sheet.refuse(f"{what}: {kind} of GeoJSON", line)
         if not isinstance(parts, list) or depth > DEEPEST:
             self.sheet.refuse(
                 f"{what}: no array '{member}', or collections in more than {DEEPEST} others", line
@@ -162,7 +163,8 @@ class _GeoJsonReader:
         name = properties.get("name") if isinstance(properties, dict) else None
         found = _CRS.fullmatch(name) if isinstance(name, str) else None
         if crs is not None and found is None:
-            self.sheet.refuse(f"crs {str(name or crs)[:60]!r}: not understood; save the file in WGS 84", line)
+            called = name if isinstance(name, str) else "without a name"
+            self.sheet.refuse(f"crs {called[:60]!r}: not understood; save the file in WGS 84", line)
         if found is None or (code := f"{found['authority']}:{found['code']}") in WGS84:
             return
         from pyproj import Transformer

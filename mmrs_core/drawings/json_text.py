@@ -34,7 +34,8 @@ def read_object(data: bytes, sheet: Sheet, walked: Collection[str]) -> JsonObjec
     walk = _Walk(_text_of(data, sheet), sheet, walked)
     value, end = walk.value(walk.blank(0), walk=True)
     if (rest := walk.blank(end)) < len(walk.text):
-        sheet.refuse("not JSON: more text after its end", walk.line(rest))
+        lines = "one object a line is not read: save a FeatureCollection" if walk.text[rest] == "{" else ""
+        sheet.refuse(lines or "not JSON: more text after its end", walk.line(rest))
     if not isinstance(value, JsonObject):
         sheet.refuse("an object is expected", 1)
     return value

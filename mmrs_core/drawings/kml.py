@@ -181,7 +181,8 @@ class _KmlReader:
         if style is not None and (colour := _colour(style)):
             traits["colour"] = colour
         times = self._time(node, what, properties)
-        traits |= {"name": node.of("name"), "description": node.of("description")}
+        named = (str(value) for key, value in properties.items() if key.lower() == "name")
+        traits |= {"name": node.of("name") or next(named, ""), "description": node.of("description")}
         traits |= {"folders": folders, "properties": properties}
         shapes = list(node.all(*GEOMETRIES))
         place = Place(self._sheet.file, node.line, f"/Placemark[{self._count}]")

@@ -310,4 +310,5 @@ def _notes(target: ImportTarget, homes: Sequence[Home], ordered: int, *, begun: 
         yield "the project has no place on the Earth yet: it gets the home of its first robot"
     yield f"heights count from {origin}; the ground is taken to be level at its height"
     if ordered:
-        yield f"waypoints keep their order: {ordered} dependencies between tasks"
+        many = "dependency" if ordered == 1 else "dependencies"
+        yield f"waypoints keep their order: {ordered} {many} between tasks"

@@ -47,7 +47,7 @@ _ENVIRONMENT: Mapping[Medium, str] = {
     "ground": "temperature (degrees Celsius)",
     "water": "currentSpeed (m/s), currentDirection (degrees that it flows to)",
 }
-_LINK_NOTE = """For the event LINK_LOST: the control station has not answered for so many seconds.
+_LINK_NOTE = """For the event LINK_LOST: the control station has not answered for this many seconds.
 RETURN is back home on a checked path. If that is not safe here: HOLD, {landing}EMERGENCY_AREA or CONTINUE."""
 _LANDING: Mapping[Medium, str] = {"air": "LAND, ", "water": "SURFACE, "}
 _WATER_NOTE = "waterDensity of the sea; about 1000 in fresh water"

@@ -221,7 +221,7 @@ def test_lists_of_fences_and_rally_points_are_shapes():
         (listed("0 1 0 x 0 0 0 0 47 8 400 1"), r"^a\.waypoints:2: 'x' is not a number"),
         (
             listed("0 1 0 1e999 0 0 0 0 47 8 400 1"),
-            r"^a\.waypoints:2: 1e999 is no number of an item, a frame or",
+            r"^a\.waypoints:2: 1e999 cannot be the number of an item",
         ),
         (listed(HOME, "1 0 3 16 0 0 0 0 8.0 47.0 20 1"), r"^a\.waypoints:3: .* seem to be swapped"),
         (listed("0 0 0 5002 3 0 0 0 47 8 0 1"), r"^a\.waypoints:2: .* 3 corners of it are expected"),

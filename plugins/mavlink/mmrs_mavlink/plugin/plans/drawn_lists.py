@@ -26,7 +26,7 @@ AROUND = {
 }
 HEADER = "QGC WPL 110"
 LARGEST = 1e6
-"""No number of an item, a frame or a command is as large."""
+"""Numbers of items, frames and commands are smaller."""
 
 
 def recognise_list(data: bytes, file: str) -> bool:
@@ -98,7 +98,7 @@ def _row_of(text: str, line: int, sheet: Sheet) -> DrawnItem:
             sheet.refuse(f"{cell[:40]!r} is not a number", line)
     for value, cell in zip(values[:4], cells, strict=False):
         if not abs(value) < LARGEST:
-            sheet.refuse(f"{cell[:40]} is no number of an item, a frame or a command", line)
+            sheet.refuse(f"{cell[:40]} cannot be the number of an item, a frame or a command", line)
     number, _, frame, command = map(int, values[:4])
     return DrawnItem(command, frame, values[8:11], number, line, values[4])
 
