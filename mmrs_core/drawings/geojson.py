@@ -163,8 +163,8 @@ class _GeoJsonReader:
         name = properties.get("name") if isinstance(properties, dict) else None
         found = _CRS.fullmatch(name) if isinstance(name, str) else None
         if crs is not None and found is None:
-            called = name if isinstance(name, str) else "without a name"
-            self.sheet.refuse(f"crs {called[:60]!r}: not understood; save the file in WGS 84", line)
+            called = f"crs '{name[:60]}'" if isinstance(name, str) else "a crs without a name"
+            self.sheet.refuse(f"{called}: not understood; save the file in WGS 84", line)
         if found is None or (code := f"{found['authority']}:{found['code']}") in WGS84:
             return
         from pyproj import Transformer

@@ -126,7 +126,8 @@ class Sheet:
                 self.refuse(f"{what}: position {number} has fewer than two coordinates", line)
             for value in row[:3]:
                 if not isinstance(value, int | float) or isinstance(value, bool):
-                    self.refuse(f"{what}: {str(value)[:40]!r} of position {number} is not a number", line)
+                    text = json.dumps(value)[:40]
+                    self.refuse(f"{what}: {text} of position {number} is not a number", line)
                 if isinstance(value, int) and abs(value) > 10**9:
                     self.refuse(f"{what}: {str(value)[:40]} of position {number} is too large", line)
         if not rows:

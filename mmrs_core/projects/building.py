@@ -177,7 +177,7 @@ class Builder:
         called = label_of(other) or "an element without a name"
         different = differences(element, other, stated)
         if not different:
-            return f"the same is there already: {called}"
+            return f"the same is there already{'' if called == feature.name else f': {called}'}"
         reason = f"its shape is there already: {called}, with {', '.join(different)}; change it there"
         top, drawn = getattr(other, "maxHeight", None), stated.get("maxHeight")
         if isinstance(top, float) and isinstance(drawn, float) and drawn > top:

@@ -106,7 +106,7 @@ def test_degrees_stay_as_they_are(name):
         (b"[" * 5_000_001, r"^a\.json: more than 5000000 arrays and objects"),
         (
             collection(feature("Point", [8, 47]), feature("Point", ["8", 47])),
-            r"^a\.json:4: .* '8' of position 1 is not a num",
+            r'^a\.json:4: .* "8" of position 1 is not a num',
         ),
         (
             collection('{"type": "Feature", "type": "Feature"}'),

@@ -122,7 +122,7 @@ def test_waypoints_with_heights_in_several_frames_are_one_line_above_home():
     assert [(each.what, each.reason) for each in drawing.left_out] == [
         (
             "frames of items 2, 3, 4",
-            "their heights above mean sea level, above the ground are counted from home instead",
+            "their heights above mean sea level and above the ground are counted from home instead",
         )
     ]
 
@@ -166,7 +166,7 @@ def test_a_part_that_is_no_object_is_refused(key):
         (plan(survey("survey", polygon=7)), r"^a\.plan:\d+: 'polygon' is not an array"),
         (
             plan(survey("survey", polygon=[[None, 8]])),
-            r"^a\.plan:\d+: .* 'None' of position 1 is not a number",
+            r"^a\.plan:\d+: .* null of position 1 is not a number",
         ),
         (plan(item(16, 0, 0, 0, 0, 100, 8, 5)), r"^a\.plan:\d+: waypoint 1: .* is not on the Earth"),
         (

@@ -99,7 +99,7 @@ class WaypointPath:
                 HeightReference.HOME,
             )
             other = [row for row in rows if row.reference is not HeightReference.HOME]
-            words = ", ".join(dict.fromkeys(f"above {row.reference.value}" for row in other))
+            words = " and ".join(dict.fromkeys(f"above {row.reference.value}" for row in other))
             what = f"frames of items {', '.join(str(row.number) for row in other)}"
             self._sheet.leave_out(what, f"their heights {words} are counted from home instead", other[0].line)
             return
