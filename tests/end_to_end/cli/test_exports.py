@@ -95,6 +95,17 @@ def test_wanted_layers_need_the_mission_or_the_behaviour_that_has_them(mmrs, pro
     assert (code, "no behaviour.xmi in this folder" in err, file.exists()) == (3, True, False)
 
 
+def test_paths_of_a_behaviour_alone_need_its_robot_types_and_homes_do_not(mmrs, layers, project, tmp_path):
+    alone, file = shutil.copy(project / "behaviour.xmi", tmp_path), tmp_path / "map.kml"
+    code, _, err = mmrs("export", alone, "-o", file)
+    assert (code, file.exists()) == (1, False)
+    assert "cannot be simulated without its robot types: '" in err
+    assert "--robots gives their files, or put these into robots/ beside it" in err
+    types = [part for each in (project / "robots").iterdir() for part in ("--robots", each)]
+    assert layers(alone, "-o", file, *types)["paths"] == 2
+    assert layers(alone, "-o", file, "--only", "homes", "--force") == {"homes": 2}
+
+
 def test_a_local_mission_is_refused_with_what_it_lacks(mmrs, tmp_path):
     project = shutil.copytree(shipped("examples") / "pool", tmp_path / "pool")
     code, _, err = mmrs("export", project, "--format", "kml")

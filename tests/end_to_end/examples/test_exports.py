@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -162,7 +163,7 @@ def attributes_of(project, contributions):
 
 
 @pytest.mark.parametrize("form", [*FORMATS, "gpx"])
-def test_tasks_are_imported_with_their_types_and_all_attributes(form, contributions, tmp_path):
+def test_tasks_are_imported_with_their_types_and_all_attributes(form, contributions, tmp_path, capsys):
     project, again = (
         Path(shutil.copytree(shipped("examples") / "mixed-team", tmp_path / "dam")),
         tmp_path / "again",
@@ -173,3 +174,9 @@ def test_tasks_are_imported_with_their_types_and_all_attributes(form, contributi
     options += [part for file in (project / "robots").iterdir() for part in ("--types", str(file))]
     assert run(["import", str(project / f"export.{form}"), "-o", str(again), *options]) == 0
     assert attributes_of(again, contributions) == attributes_of(project, contributions)
+    capsys.readouterr()
+    assert run(["import", str(project / f"export.{form}"), "--into", str(project), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    same = ["the same is there already", *(f"it is the home of {name} already" for name in robots)]
+    assert {each["left_because"] for each in told["features"]} == set(same)
+    assert told["files"] == []
