@@ -116,6 +116,8 @@ def import_drawings(
         error = _without_robots(result, contributions)
     if error is None and team and has_errors(result.diagnostics):
         hint = "correct the drawing, or leave features out with --as NAME=ignore"
+        if into is None and not any(each.path.startswith("/tasks") for each in result.outcomes):
+            hint = "no feature becomes a task; --as NAME=task makes one, --into adds to a project with tasks"
         words = f"nothing written: the project would not be valid; {hint}"
         error = InvalidModelError(words, result.diagnostics)
     if not json:

@@ -151,3 +151,12 @@ def test_many_that_are_the_same_have_one_line_and_json_has_every_one(tmp_path, m
     ]
     assert run(["import", "f.geojson", "--dry-run", "--json"]) == 0
     assert [each["name"] for each in told(capsys)["features"]] == [name for name, _ in names]
+
+
+def test_a_drawing_without_tasks_says_what_to_do(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("trees.csv").write_text("lat,lon,name,radius\n44.5,11.34,obstacle,3\n")
+    assert run(["import", "trees.csv", "-o", "farm", "--robot=K=Freefly Astro LR1@44.5,11.35"]) == 1
+    words = "no feature becomes a task; --as NAME=task makes one, --into adds to a project with tasks"
+    assert words in capsys.readouterr().err
+    assert not Path("farm").exists()
