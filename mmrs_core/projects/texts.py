@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from mmrs_core.analysis.fixes.repair import with_edits
+from mmrs_core.analysis.fixes.repair import line_ending_of, with_edits
 from mmrs_core.contributions.fixes import Edit
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form import is_json
@@ -51,9 +50,8 @@ def with_added(
     Raises:
         UnreadableError: if the text is not in UTF-8.
     """
-    ending = b"\r\n" if data.count(b"\r\n") == data.count(b"\n") > 0 else b"\n"
     if is_json(file.name):
-        return to_json((root,), registry, file=file).replace(b"\n", ending)
+        return to_json((root,), registry, file=file).replace(b"\n", line_ending_of(data))
     markup = Markup(data, str(file))
     tag = markup.models()[0]
     prefixes = tag.prefixes()
@@ -73,7 +71,6 @@ def with_added(
             texts.append(text)
     if texts:
         edits.append(_inside(tag, "".join(texts), data))
-    edits = [replace(each, text=each.text.replace("\n", ending.decode())) for each in edits]
     changed = with_edits(data, edits)
     assert changed is not None  # they are at different places
     return changed

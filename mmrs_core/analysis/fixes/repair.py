@@ -242,13 +242,19 @@ def _withholding(markup: Markup | None, edits: Iterable[Edit]) -> Iterator[Edit]
     yield from values.values()
 
 
+def line_ending_of(data: bytes) -> bytes:
+    """Return the line ending of a text; that of Unix where it has several, or none."""
+    return b"\r\n" if 0 < data.count(b"\r\n") == data.count(b"\n") else b"\n"
+
+
 def with_edits(data: bytes, edits: Iterable[Edit]) -> bytes | None:
-    """Return a text with other parts; None if two of the edits get into each other's way."""
-    parts, end = [], 0
+    """Return a text with other parts, in its line endings; None if two edits get into each other's way."""
+    ending, parts, end = line_ending_of(data), [], 0
     for edit in sorted(edits):
         if edit.begin < end:
             return None
-        parts += [data[end : edit.begin], edit.text.encode()]
+        text = edit.text.encode().replace(b"\r\n", b"\n").replace(b"\n", ending)
+        parts += [data[end : edit.begin], text]
         end = edit.end
     return b"".join((*parts, data[end:]))
 
