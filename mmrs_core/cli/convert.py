@@ -55,8 +55,8 @@ def convert(
         typer.Option(
             "-o",
             "--output",
-            metavar="DIR",
-            help="Output folder for several models, whose references are kept.",
+            metavar="DIR|FILE",
+            help="Output folder for several models, whose references are kept, or the file of one.",
         ),
     ] = None,
     to: Annotated[
@@ -88,6 +88,10 @@ def convert(
     asked = _Asked(
         Session(settings_of(call)), to, tuple(metamodel or ()), schema_location, names, force, json
     )
+    if output is not None and output.suffix.lower() in (".xmi", ".json") and not output.is_dir():
+        if len(files) > 1 or files[0].is_dir():
+            raise typer.BadParameter(f"-o {output}: one file for several models; name an output folder")
+        return _alone(asked, files[0], output)
     if output is not None:
         return _together(asked, files, output)
     if len(files) > 2:

@@ -55,6 +55,14 @@ def test_comments_are_counted_since_they_are_left_out(zoos, capsys):
     assert json.loads(capsys.readouterr().out)["comments_left_out"] == 2
 
 
+def test_an_output_with_the_suffix_of_a_model_is_a_file(zoos, capsys):
+    known = ["--metamodel", "zoo.ecore"]
+    assert run(["convert", "a.xmi", "-o", "c.json", *known]) == 0
+    assert refs(zoos / "c.json") == ["b.xmi#/1"]
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "d.json", *known]) == 2
+    assert "-o d.json: one file for several models; name an output folder" in capsys.readouterr().err
+
+
 def test_back_again_they_say_the_same(zoos, capsys):
     known = ["--metamodel", "zoo.ecore"]
     assert run(["convert", "a.xmi", "b.xmi", "-o", "there", *known]) == 0
