@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf
 from statistics import median
 
 from flown_times.models import Modelled
@@ -11,6 +12,13 @@ from flown_times.tracks import NEAR, Sample, left_at, missions_in, stop_at
 
 STALL = 1.0
 """Seconds from which the log's clock has run ahead."""
+
+LATE = 0.4
+"""Seconds by which a step is logged to take longer than its track shows, beyond what is usual, from which it
+was logged late, or the simulation fell behind in it."""
+
+AT_ONCE = 0.1
+"""Seconds after the end of a step within which the next one begins that does so at once."""
 
 SETTING_OUT = 0.4
 """Seconds from a command until the track shows that the vehicle moves."""
@@ -31,14 +39,18 @@ class Clock:
         ahead = [time - seen for time, seen in known]
         self._at = [time for time, _ in known]
         self._ahead = [median(ahead[max(0, i - 1) : i + 2]) for i in range(len(ahead))]
+        self._late = dict(_late(steps, dict(known))) if modelled.takes_off else {}
 
     def passed(self, begin: float, end: float) -> float:
         """Return the vehicle's seconds between two times of the log.
 
-        Where a stop shows on a track to a few tenths of a second only, the log counts, but for stalls.
+        Where a stop shows on a track to a few tenths of a second only, the log counts, but for stalls and
+        late steps; those of copters only, as others turn, or speed up slowly, before a track shows it.
         """
         seconds = self.at(end) - self.at(begin)
-        return seconds if end - begin - seconds > STALL else end - begin
+        if end - begin - seconds > STALL:
+            return seconds
+        return end - begin - self._late.get(end, 0.0)
 
     def at(self, time: float) -> float:
         """Return the vehicle's time at a time of the log."""
@@ -50,6 +62,27 @@ class Clock:
         one, two = self._at[after - 1], self._at[after]
         part = (time - one) / (two - one) if two > one else 0.0
         return time - (self._ahead[after - 1] + part * (self._ahead[after] - self._ahead[after - 1]))
+
+
+def _late(steps: Sequence[Step], seen: Mapping[float, float]) -> Iterator[tuple[float, float]]:
+    """Yield the ends of steps that the log tells to be longer than the track does, and by how much.
+
+    What is usual for the robot is no delay: so long it takes to set out, and until its stop is noticed. A
+    step that begins at once does so where the last one ended.
+    """
+    longer: dict[float, float] = {}
+    begin = before = -inf
+    for label, _, time in steps:
+        if label == "begin":
+            begin = time if time in seen or time - before > AT_ONCE else before
+        elif label == "end":
+            if begin in seen and time in seen and seen[begin] < seen[time]:
+                longer[time] = time - begin - (seen[time] - seen[begin])
+            before = time
+    if longer:
+        usual = median(longer.values())
+        most = usual + max(LATE, 2.0 * median(abs(each - usual) for each in longer.values()))
+        yield from ((end, each - usual) for end, each in longer.items() if each > most)
 
 
 def _known(

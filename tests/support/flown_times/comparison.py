@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from flown_times.clock import Clock, Step
-from flown_times.models import ACCEPTANCE, Estimate, Modelled, opened
+from flown_times.models import ACCEPTANCE, SPEEDS, Estimate, Modelled, opened
 from flown_times.tracks import AUTO, Sample, track_in
 from mmrs_mavlink.plugin.plans.items import TAKE_OFF, WAYPOINT
 
@@ -105,7 +105,7 @@ def compared(folder: Path, *, px4: bool = False) -> list[Comparison]:
     session, loaded = opened(folder, px4=px4)
     found = []
     for robot in loaded.program.robots:
-        modelled = Modelled(session, loaded, robot, ACCEPTANCE.get(folder.name))
+        modelled = Modelled(session, loaded, robot, ACCEPTANCE.get(folder.name), SPEEDS.get(folder.name))
         track = track_in(folder / f"{robot.id}.track.csv.gz")
         log = folder / "logs" / f"{robot.id}.jsonl"
         if log.is_file():

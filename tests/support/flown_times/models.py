@@ -9,7 +9,7 @@ from math import dist
 from pathlib import Path
 
 from mmrs_core.analysis.durations import Duration, durations_of
-from mmrs_core.analysis.figures import seconds_of
+from mmrs_core.analysis.figures import move_kind_of, seconds_of
 from mmrs_core.analysis.motion import motions
 from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.cli.behaviours import Loaded, load_behaviour
@@ -28,6 +28,10 @@ from mmrs_mavlink.plugin.plans.items import PlanItem
 
 ACCEPTANCE = {"rover-arcs-acceptance-1": 1.0}
 """Metres at which places counted as reached on flights for which ``--acceptance`` was given."""
+
+SPEEDS = {"sub-auto": {"goto_001": 1.0, "goto_002": 1.0}}
+"""Speeds of moves, metres per second, that tracks show where others were commanded: that vehicle took no
+notice of the change of speed before the first leg of its mission."""
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 
@@ -80,9 +84,14 @@ class Modelled:
     """One robot of a flight as it is modelled."""
 
     def __init__(
-        self, session: Session, loaded: Loaded, robot: RobotProgram, accepts: float | None = None
+        self,
+        session: Session,
+        loaded: Loaded,
+        robot: RobotProgram,
+        accepts: float | None = None,
+        speeds: Mapping[str, float] | None = None,
     ) -> None:
-        self.robot, self._accepts = robot, accepts
+        self.robot, self._accepts, self._speeds = robot, accepts, speeds or {}
         self._contributions, self._program, self._place = session.contributions, loaded.program, loaded.place
 
     @cached_property
@@ -113,6 +122,12 @@ class Modelled:
             if move.id not in flown and move.target is not None and move.target.position is not None
         }
 
+    @property
+    def takes_off(self) -> bool:
+        """Whether the robot takes off."""
+        kinds = (move_kind_of(self._check(uploaded=False), move) for move in self.robot.moves)
+        return any(kind is not None and kind.manoeuvre == "take_off" for kind in kinds)
+
     def items(self) -> tuple[PlanItem, ...]:
         """Return the items of the robot's mission."""
         (items, *_) = sorties_of(context_of(self.robot, self._target(uploaded=False)))
@@ -121,11 +136,13 @@ class Modelled:
     def estimates(self, *, uploaded: bool) -> dict[str, Estimate]:
         """Return how long each move takes but charging, which an operator ends; `uploaded`: as a mission."""
         check = self._check(uploaded=uploaded)
-        durations = durations_of(check, self.robot, motions(check)[self.robot.id]).of
+        flown = (replace(move, speed=self._speeds.get(move.id, move.speed)) for move in self.robot.moves)
+        robot = replace(self.robot, moves=tuple(flown))
+        durations = durations_of(check, robot, motions(check)[robot.id]).of
         type = self._place.types[self.robot.type_name]
         found: dict[str, Estimate] = {}
-        for each in planned_moves(self.robot, self._target(uploaded=uploaded)):
-            move = self.robot.moves[each.index]
+        for each in planned_moves(robot, self._target(uploaded=uploaded)):
+            move = robot.moves[each.index]
             if each.seconds is not None and not move.is_a(RECHARGE):
                 acting = sum(seconds_of(action, type) or 0.0 for action in (*move.before, *move.after))
                 whole = each.seconds.expected
