@@ -74,6 +74,7 @@ def _kinematics(
         turn_rate=min(plain.turn_rate, autopilot.turn_rate),
         charging=autopilot.charging,
         mission=mission,
+        upright=autopilot.upright and capability.timing("", autopilot.upright),
     )
     return driven.flown_by(step)
 

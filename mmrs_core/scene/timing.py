@@ -23,9 +23,6 @@ LEVEL = 1e-6
 STRAIGHT = 0.005
 """Half the sine of turns, about half a degree, up to which a corner is none."""
 
-SETTLED = 0.5
-"""Metres beyond a target from which a robot need not come back to be there."""
-
 SPEEDING = 0.97
 """Share of the seconds at even speed that a leg takes at least whose ends are passed."""
 
@@ -38,12 +35,16 @@ ANSWERING = 0.2
 ARC = 0.5
 """Radians of an arc of shunting at most: it leads half of the turning radius from where the robot stands."""
 
-RETURNING = 0.63
-"""Metres per second at which a robot comes back that has gone beyond its target."""
-
-
 Leg: TypeAlias = tuple[Position, Position]
 """Where a straight leg begins and ends."""
+
+
+Push: TypeAlias = tuple[float, float]
+"""East and north: how much of the thrust against the drag of its hull at cruise a robot has built up. It is
+left when the robot stops, which lags less on a leg in that direction, and more on one back."""
+
+STANDING: Push = (0.0, 0.0)
+"""The push of a robot that has not moved yet."""
 
 
 class MoveSeconds(NamedTuple):
@@ -123,7 +124,7 @@ class Rates:
         """Keep what all level legs share: planning asks for the seconds of very many."""
         up, down, jerk = self.timing.acceleration, self.timing.braking, self.timing.jerk
         phases = _speeding(self.cruise, up, jerk) + _speeding(self.cruise, down, jerk)
-        object.__setattr__(self, "_both_ends", phases / 2.0 + self._settling(self.cruise))
+        object.__setattr__(self, "_both_ends", phases / 2.0 + self.timing.settled(self.cruise))
         object.__setattr__(self, "_reaching", self.cruise * phases / 2.0)
         limited = max(up, down) < inf
         object.__setattr__(self, "_slowness", 1.0 / up + 1.0 / down if limited or jerk == inf else 1.0)
@@ -165,23 +166,26 @@ class Rates:
         rate = self.climb if rise > 0 else self.descent
         return abs(rise) / rate if rate > 0 else inf
 
-    def from_stop_to_stop(self, start: Position, end: Position, facing: float | None = None) -> float:
+    def from_stop_to_stop(
+        self, start: Position, end: Position, facing: float | None = None, push: Push | None = None
+    ) -> float:
         """Return the seconds of a straight leg from a stop to a stop, turning and settling included.
 
         Args:
             start, end: of the leg.
             facing: degrees clockwise from north in which the robot looks before it; None: not known.
+            push: with which it begins; None: not known.
         """
         if self.bound < 0 and dist(start, end) <= self.timing.acceptance:
             return 0.0
-        seconds = self.share * self._straight(start, end)
+        seconds = self.share * self._straight(start, end, push)
         if not self.bound and 0.0 < (length := dist(start, end)) <= self.accepts:
             seconds = self._among_short_ones(start, end, int(self.accepts / length) + 1)
         if self.bound and self.timing.still > 0.0:
             inexact = self._between_inexact_ends(start, end)
             seconds = min(seconds, inexact) if self.bound < 0 else max(seconds, inexact)
-        if self.bound > 0:
-            seconds += self.timing.stall
+        if self.bound > 0 and self.timing.stall and (push is None or _along(start, end, push) < 0.0):
+            seconds += self.timing.stall * exp(-dist(start, end) / self.timing.stall_within)
         return max(self.least, seconds + self.turning(start, end, facing))
 
     def _among_short_ones(self, start: Position, end: Position, legs: int) -> float:
@@ -225,7 +229,7 @@ class Rates:
     def settling(self, start: Position, end: Position) -> float:
         """Return the seconds that a leg takes longer as it ends with a stop, which is not passed."""
         seconds, fastest = self._stopping(start, end)
-        return self.share * max(0.0, self._lag(seconds, start, end) + self._settling(fastest))
+        return self.share * max(0.0, self._lag(seconds, start, end) + self.timing.settled(fastest))
 
     def eased(self, start: Position, end: Position) -> float:
         """Return the fewest seconds of a leg whose ends are passed.
@@ -251,14 +255,14 @@ class Rates:
             return self._stopping(start, end)[0]
         if self.bound > 0:
             seconds, fastest = _stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
-            return seconds + self._lag(seconds, start, end) + max(0.0, self._settling(fastest))
+            return seconds + self._lag(seconds, start, end) + max(0.0, self.timing.settled(fastest))
         still = min(timing.still, speed)
         ends = [_reaching(still, limit, timing.jerk) for limit in (up, down)]
         whole = length + sum(metres for _, metres in ends)
         seconds, _ = _stop_to_stop(whole, speed, up, down, timing.jerk)
         return max(0.0, seconds - sum(each for each, _ in ends))
 
-    def _straight(self, start: Position, end: Position) -> float:
+    def _straight(self, start: Position, end: Position, push: Push | None = None) -> float:
         if -LEVEL <= end[2] - start[2] <= LEVEL and not self.timing.lag:
             length = hypot(end[0] - start[0], end[1] - start[1])
             if length <= 0.0:
@@ -268,17 +272,39 @@ class Rates:
             slowness, bending = self._slowness, self._bending
             fastest = (sqrt(bending * bending + 8.0 * slowness * length) - bending) / (2.0 * slowness)
             if fastest >= self._bent:
-                return slowness * fastest + bending + self._settling(fastest)
+                return slowness * fastest + bending + self.timing.settled(fastest)
         seconds, fastest = self._stopping(start, end)
         if seconds <= 0.0:
             return seconds
-        return max(0.0, seconds + self._lag(seconds, start, end) + self._settling(fastest))
+        return max(0.0, seconds + self._lag(seconds, start, end, push) + self.timing.settled(fastest))
 
-    def _lag(self, seconds: float, start: Position, end: Position) -> float:
+    def _lag(self, seconds: float, start: Position, end: Position, push: Push | None = None) -> float:
         """Return how much longer a leg takes that would take so long, seconds."""
         if not self.timing.lag or start[:2] == end[:2]:
             return 0.0
-        return self.timing.lag * (1.0 - exp(-seconds / self.timing.lag_within))
+        along = -float(self.bound) if push is None else _along(start, end, push)
+        lacks = max(0.0, 1.0 - self._drag(start, end) * along)
+        return lacks * self.timing.lag * (1.0 - exp(-seconds / self.timing.lag_within))
+
+    def _drag(self, start: Position, end: Position) -> float:
+        """Return the largest drag on a leg as a share of that at cruise; it grows as the speed squared."""
+        level, length = dist(start[:2], end[:2]), dist(start, end)
+        return (self._stopping(start, end)[1] * level / (length * self.cruise)) ** 2
+
+    def push(self, start: Position, end: Position, before: Push | None) -> Push | None:
+        """Return the push that is left after a leg, which grows by the time constant of the lag.
+
+        Args:
+            start, end: of the leg.
+            before: with which it began; None: not known.
+        """
+        east, north = end[0] - start[0], end[1] - start[1]
+        if not self.timing.lag or (level := hypot(east, north)) <= LEVEL:
+            return before if self.timing.lag else None
+        drag = self._drag(start, end)
+        gone = exp(-self._stopping(start, end)[0] / self.timing.lag_within)
+        share = drag - (drag - _along(start, end, before)) * gone
+        return (share * east / level, share * north / level)
 
     def _stopping(self, start: Position, end: Position) -> tuple[float, float]:
         """Return the seconds of a leg from a stop to a stop, and its largest speed."""
@@ -324,9 +350,12 @@ class Rates:
             up, down = (min(each * length / level, steep) if level > 0.0 else steep for each in (up, down))
         return length, length / even if even > 0.0 else inf, up, down
 
-    def _settling(self, fastest: float) -> float:
-        beyond = self.timing.overshoot * fastest if self.timing.overshoot > 0.0 else 0.0
-        return self.timing.settling + ((beyond - SETTLED) / RETURNING if beyond > SETTLED else 0.0)
+
+def _along(start: Position, end: Position, push: Push | None) -> float:
+    """Return how much of a push is along a leg; 0 where it is not known."""
+    east, north = end[0] - start[0], end[1] - start[1]
+    level = hypot(east, north)
+    return (east * push[0] + north * push[1]) / level if push is not None and level > LEVEL else 0.0
 
 
 def _rounded(away: float, aside: float, radius: float) -> float:

@@ -8,6 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
+SETTLED = 0.5
+"""Metres beyond a target from which a robot need not come back to be there."""
+
+RETURNING = 0.63
+"""Metres per second at which a robot comes back that has gone beyond its target."""
+
 
 @dataclass(frozen=True, slots=True)
 class LegTiming:
@@ -26,8 +32,10 @@ class LegTiming:
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
         settling: seconds from the end of a leg until it is reported as done; negative: before its end.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
-            after some time; and the time constant of that, seconds.
-        stall: seconds for which it may stand at a target before it counts as reached, at most.
+            after some time, as it builds up the thrust for it; and the time constant of that, seconds.
+        stall: seconds for which it may stand at a target before it counts as reached, at most, unless it goes
+            on in the direction of its last leg.
+        stall_within: metres of a leg with which that becomes less, by e.
         keeps_acceleration: whether it is expected to keep the acceleration that the robot type states.
         overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
             speed, that is, seconds.
@@ -54,6 +62,7 @@ class LegTiming:
     lag: float = 0.0
     lag_within: float = 1.0
     stall: float = 0.0
+    stall_within: float = inf
     keeps_acceleration: bool = True
     overshoot: float = 0.0
     spread: float = 0.0
@@ -67,6 +76,14 @@ class LegTiming:
     def braking(self) -> float:
         """Return the level deceleration, metres per second squared."""
         return self.acceleration if self.deceleration is None else self.deceleration
+
+    def settled(self, fastest: float) -> float:
+        """Return the seconds after the end of a leg of a largest speed until it is reported as done.
+
+        A robot that has gone beyond its target comes back.
+        """
+        beyond = self.overshoot * fastest if self.overshoot > 0.0 else 0.0
+        return self.settling + ((beyond - SETTLED) / RETURNING if beyond > SETTLED else 0.0)
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.
@@ -87,7 +104,8 @@ class AutopilotTiming:
     Attributes:
         step: legs that are commanded one by one.
         mission: legs of a mission that was uploaded; None: none is, or these are taken as steps are.
-        launch: seconds from the command to launch until the robot climbs; None: as its kind says.
+        upright: legs of launching and landing; None: these are taken as steps are.
+        launch: seconds that launching takes beside the climb; None: as its kind says.
         recovery: seconds from touching the ground until it stands still; None: as its kind says.
         landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
         rounds: whether a vehicle that cannot turn on the spot drives round instead of shunting.
@@ -97,6 +115,7 @@ class AutopilotTiming:
 
     step: LegTiming = IDEAL
     mission: LegTiming | None = None
+    upright: LegTiming | None = None
     launch: float | None = None
     recovery: float | None = None
     landing_rate: float = inf

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import cos, hypot, inf, radians, sin, sqrt
+from math import cos, hypot, inf, pi, radians, sin, sqrt
 
 from mmrs_runtime.timing import LegTiming
 
@@ -20,8 +20,13 @@ STEP = 0.05
 STANDING = 0.5
 """Speed, metres per second, below which a leg begins; a faster vehicle brakes before."""
 
-SLOW, BEYOND = 0.3, 0.06
-"""Speed below which it no longer aims beyond a target, and seconds at its largest speed by which it does."""
+SLOW, LAGGING = 0.3, 0.085
+"""Speed below which it no longer aims beyond a target; and seconds of its overshoot that it does not aim at,
+since it goes so far beyond what it aims at."""
+
+UNSTEADY, SWAY, SWAY_SECONDS, AT_TARGET = 1.0, 0.4, 3.0, 0.5
+"""Seconds of settling from which a vehicle sways at its target so long; its speed then; the seconds of each
+circle; and metres from a target at which it begins to."""
 
 DRIVING = 2.5
 """Acceleration, metres per second squared, with which it approaches commanded speeds."""
@@ -123,6 +128,10 @@ class Body:
     _legs: list[CurvedLeg] = field(default_factory=list)
     _fastest: float = 0.0
     """Largest speed since it last stood still."""
+    _settling: float | None = None
+    """Seconds until it has settled at its target; None: it has not slowed down yet."""
+    _settles_at: Vector | None = None
+    """That target."""
     _start: Vector = STILL
     """Where the first of its legs begins."""
     _goal: Vector | None = None
@@ -229,6 +238,11 @@ class Body:
         """Approach a target, or brake, with limited acceleration and jerk."""
         self._legs.clear()
         figures, path = self.figures, plus(self._aim(target), self.position, -1.0)
+        if self._settling:
+            self._settling = max(0.0, self._settling - step)
+            if target and self.pace <= SWAY + CLOSE and self.distance_to(target) <= AT_TARGET:
+                self._sway(self._settling, step)
+                return
         level, upwards = figures.acceleration, figures.vertical_acceleration or figures.acceleration
         pace = min(_root(hypot(*path[:2]), level, figures.jerk), self.speed)
         rate = min(_root(abs(path[2]), upwards, figures.jerk), self._rate(path[2]))
@@ -250,9 +264,20 @@ class Body:
         if target is None or target[:2] == self.position[:2]:
             return target or self.position
         (north, east, _), pace = self.velocity, hypot(*self.velocity[:2])
+        if target != self._settles_at:
+            self._settling, self._settles_at = None, target
+        if pace <= SWAY < self._fastest and self._settling is None:
+            unsteady = self.figures.settling >= UNSTEADY
+            self._settling = self.figures.settled(self._fastest) if unsteady else 0.0
         self._fastest = max(self._fastest, pace) if pace > SLOW else 0.0
-        beyond = BEYOND * self._fastest if self.figures.overshoot else 0.0
+        beyond = max(0.0, self.figures.overshoot - LAGGING) * self._fastest
         return plus(target, (north, east, 0.0), beyond / pace) if beyond > 0.0 else target
+
+    def _sway(self, left: float, step: float) -> None:
+        """Go round, as fast as the estimate of a vehicle wanders that settles, for what is left of that."""
+        around = 2.0 * pi * left / SWAY_SECONDS
+        self.velocity = (SWAY * sin(around), SWAY * cos(around), 0.0) if left else STILL
+        self.position, self._acceleration = plus(self.position, self.velocity, step), STILL
 
     def _drive(self, ahead: float, aside: float, up: float, turn: float, step: float) -> None:
         """Approach commanded speeds."""

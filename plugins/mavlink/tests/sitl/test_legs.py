@@ -11,7 +11,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.scene.timing import LegTiming, Rates
-from mmrs_mavlink.profiles import ARDUCOPTER
+from mmrs_mavlink.profiles import ARDUCOPTER, PX4_MULTICOPTER
 from mmrs_mavlink.sitl.body import STEP, Body, Vector
 
 PACING = ARDUCOPTER.pacing
@@ -73,6 +73,18 @@ def test_a_vehicle_overshoots_single_targets_as_arducopter(length, speed, beyond
     """Measured on recorded flights of ArduCopter 4.7-dev in GUIDED, by the peak speed of the leg."""
     track = flown([(0.0, 0.0, 10.0), (0.0, length, 10.0)], speed, curved=False)
     assert max(place[1] for place in track) - length == pytest.approx(beyond, abs=0.12)
+
+
+@pytest.mark.parametrize("length", [15.0, 30.0, 100.0])
+def test_a_px4_that_is_commanded_leg_by_leg_settles_as_long_as_is_planned(length):
+    figures = PX4_MULTICOPTER.pacing.step
+    body = Body(figures, (0.0, 0.0, 10.0), speed=5.0)
+    body.target, seconds = (length, 0.0, 10.0), 0.0
+    while body.distance_to(body.target) > 0.5 or body.pace > 0.3:
+        body.advance(STEP)
+        seconds += STEP
+    planned = Rates(5.0, 3.0, 1.5, figures).from_stop_to_stop((0.0, 0.0, 10.0), body.target)
+    assert seconds == pytest.approx(planned, rel=0.12)
 
 
 @given(level, level, height, height, speeds, st.booleans())
