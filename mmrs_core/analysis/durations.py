@@ -17,11 +17,11 @@ from mmrs_core.analysis.figures import (
 from mmrs_core.analysis.motion import Motion, MovePath
 from mmrs_core.analysis.verdicts import UnknownMove
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram, SlotId
-from mmrs_core.behaviour.walk import reachable_moves
+from mmrs_core.behaviour.walk import reachable_moves, reversed_graph, successors
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
 from mmrs_core.scene import Kinematics, Name, RobotType
-from mmrs_core.scene.timing import MoveSeconds, acting
+from mmrs_core.scene.timing import STANDING, MoveSeconds, Push, acting
 from mmrs_runtime.timing import IDEAL, LegTiming
 
 HOLD: Name = (BEHAVIOUR, "HoldPosition")
@@ -91,13 +91,13 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         legs[leg.move].append(leg)
     local = input.program.frame.is_local
     passages = Passages(robot, input.move_kinds, kinematics, local=local)
-    passed = _passed(robot, passages, legs)
+    passed, pushes = _passed(robot, passages, legs), _pushes(robot, passages, legs)
     gaps = {gap.move: gap for gap in motion.gaps}
     found: dict[int, Duration] = {}
     for index in moves:
         move = robot.moves[index]
         flows = replace(move, flows=index in passed)
-        known = passages.kinematics(move)
+        known = replace(passages.kinematics(move), push=pushes.get(index))
         moving = _least(move) if index in gaps else _moving(input, robot, flows, legs[index], known)
         found[index] = _with_actions(move, moving, robot_type, kinematics.timing)
         if index not in gaps and found[index].whole.high == inf:
@@ -126,6 +126,24 @@ def _passed(robot: RobotProgram, passages: Passages, legs: Mapping[int, list[Mov
         if any(passages.ahead(robot.moves[source], leg.points) for leg in legs.get(source, ()))
         for index in (source, transition.to)
     )
+
+
+def _pushes(
+    robot: RobotProgram, passages: Passages, legs: Mapping[int, list[MovePath]]
+) -> dict[int, Push | None]:
+    """Return with which push the robot begins those of its moves that it always makes in one order."""
+    graph = successors(robot)
+    before = reversed_graph(graph)
+    found: dict[int, Push | None] = {}
+    index = robot.start
+    push: Push | None = STANDING
+    while index not in found and len(before[index]) <= 1:
+        found[index] = push
+        paths = legs.get(index, [])
+        known = len(paths) == 1 and paths[0].radius == 0.0
+        push = passages.push(robot.moves[index], paths[0].points, push) if known else None
+        index = graph[index][0] if len(graph[index]) == 1 else index
+    return found
 
 
 def _moving(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 from mmrs_core.contributions.rules import MoveKind, most_specific
@@ -12,6 +13,7 @@ from mmrs_core.scene.headings import bearing
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram
     from mmrs_core.scene import Kinematics, Name, Position
+    from mmrs_core.scene.timing import Push
 
 
 class Passage(NamedTuple):
@@ -76,6 +78,13 @@ class Passages:
         seen = None if look is None else look.seen_from(path[-1])
         along = bearing(path[-2], path[-1]) if seen is None and len(path) > 1 else seen
         return before if along is None else along
+
+    def push(self, move: Move, path: tuple[Position, ...], before: Push | None) -> Push | None:
+        """Return the push that a robot has after a move along a path; `before`: that with which it began."""
+        rates = self.kinematics(move).rates(move.speed)
+        for leg in pairwise(path):
+            before = rates.push(*leg, before)
+        return before
 
     def ahead(self, move: Move, path: tuple[Position, ...]) -> Passage | None:
         """Return what a robot saves that need not stop at the end of a move; None: it stops there."""

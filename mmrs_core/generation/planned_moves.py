@@ -13,7 +13,7 @@ from mmrs_core.contributions.rules import most_specific, robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Position, RobotType
-from mmrs_core.scene.timing import MoveSeconds
+from mmrs_core.scene.timing import STANDING, MoveSeconds, Push
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +63,7 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
     here, both = robot.home, 0.0
     facing: float | None = None
+    push: Push | None = STANDING
     local = input.program.frame.is_local
     passages = Passages(robot, input.move_kinds, kinematics, local=local) if kinematics is not None else None
     for index in _order(robot):
@@ -75,9 +76,10 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
             ahead = passages.ahead(move, path)
             saved = both + (ahead.settling + ahead.overlap / 2.0 if ahead is not None else 0.0)
             both = ahead.overlap / 2.0 if ahead is not None else 0.0
-            limits = replace(passages.kinematics(move), facing=facing)
+            limits = replace(passages.kinematics(move), facing=facing, push=push)
             duration = kind.seconds(move, path, limits, robot.travel_mode)
             facing = passages.facing(move, path, facing) if ahead is None else None
+            push = passages.push(move, path, push)
             seconds = _seconds(move, duration, saved, type)
         yield PlannedMove(index, kind.manoeuvre if kind is not None else "", path, seconds)
         here = path[-1] if path else None

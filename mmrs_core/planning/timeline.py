@@ -34,7 +34,7 @@ from mmrs_core.scene import (
     Transit,
 )
 from mmrs_core.scene.robots import BACK_SECONDS
-from mmrs_core.scene.timing import Rates, acting, bounded, noticing
+from mmrs_core.scene.timing import STANDING, Push, Rates, acting, bounded, noticing
 
 _Given: TypeAlias = tuple[float, float, Mapping[str, int]]
 """Seconds at which a signal is given at the earliest, and at the latest, and what is then known."""
@@ -122,7 +122,7 @@ class _Walk:
         hasty: see `timelines_of`.
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
-        gone: whether it has gone anywhere yet.
+        gone: whether it has gone anywhere yet. push: with which it begins its next leg.
         stops, known: see `Timeline`.
     """
 
@@ -135,6 +135,7 @@ class _Walk:
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
     gone: bool = False
+    push: Push | None = STANDING
     stops: list[Ride] = field(default_factory=list)
     known: list[Mapping[str, int]] = field(default_factory=lambda: [{}])
 
@@ -202,6 +203,7 @@ class _Walk:
         begin, ends, latest = (self.now, self.by, self.here, self.radius), [], step.end
         for _, arm in step.arms:
             self.now, self.by, self.here, self.radius = begin
+            self.push = None
             for inner in arm:
                 self.add(inner, given)
             if not arm:
@@ -211,7 +213,7 @@ class _Walk:
         for self.now, self.here, self.radius in ends:
             self.by = latest
             self._stay(0.0)
-        self.now, self.here = min(now for now, _, _ in ends), step.exit
+        self.now, self.here, self.push = min(now for now, _, _ in ends), step.exit, None
 
     def _transit(self, step: Transit) -> None:
         rates = self.kinematics.rates(step.speed)
@@ -241,9 +243,11 @@ class _Walk:
 
     def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
         soonest, latest = rates.soonest(), rates.latest()
-        legs = list(pairwise(points))
-        least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
-        most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
+        legs, least, most = list(pairwise(points)), 0.0, 0.0
+        for leg in legs:
+            least += soonest.from_stop_to_stop(*leg, push=self.push)
+            most += latest.from_stop_to_stop(*leg, push=self.push)
+            self.push = rates.push(*leg, self.push)
         slowest = min(rates.cruise, rates.climb, rates.descent)
         search = (self.radius / slowest if slowest > 0.0 else inf) if self.radius else 0.0
         early = self.now

@@ -10,7 +10,7 @@ from typing import Any
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.headings import turn
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
-from mmrs_core.scene.timing import MoveSeconds, Rates, bounded, noticing
+from mmrs_core.scene.timing import MoveSeconds, Push, Rates, bounded, noticing
 from mmrs_runtime.policies import Policy
 from mmrs_runtime.timing import IDEAL, LegTiming
 
@@ -169,6 +169,7 @@ class Kinematics:
         mission: timing of the legs of a mission that is uploaded; None: as that of single ones.
         upright: timing of launch and landing; None: as that of legs.
         facing: degrees clockwise from north in which it looks before a move; None: not known.
+        push: with which it begins a move; None: not known.
     """
 
     cruise: float
@@ -199,6 +200,7 @@ class Kinematics:
     mission: LegTiming | None = None
     upright: LegTiming | None = None
     facing: float | None = None
+    push: Push | None = None
 
     def fits_curve(self, turn: float, leg: float) -> bool:
         """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.

@@ -27,6 +27,7 @@ from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import DISTANCE, Position
 from mmrs_core.scene.headings import bearing
+from mmrs_core.scene.timing import STANDING, Push
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of, move_kinds_of
@@ -85,6 +86,7 @@ class SimulatedRobot(Vehicle):
         self._grounded, self._stopped, self._halted = True, False, False
         self._rolling = 0.0
         self._facing: float | None = None
+        self._push: Push | None = STANDING
         self._bears = False
         self._repeats: dict[str, tuple[float, float]] = {}
         self._move: Move | None = None
@@ -232,7 +234,7 @@ class SimulatedRobot(Vehicle):
     def _travel(
         self, move: Move, kind: MoveKind, path: tuple[Position, ...], now: float, through: bool
     ) -> None:
-        kinematics = replace(self._passages.kinematics(move), facing=self._facing)
+        kinematics = replace(self._passages.kinematics(move), facing=self._facing, push=self._push)
         rates = kinematics.rates(move.speed)
         turning = rates.turning(path[0], path[1], self._facing) if len(path) > 1 else 0.0
         ahead = self._passages.ahead(move, path) if through else None
@@ -240,6 +242,7 @@ class SimulatedRobot(Vehicle):
         seconds -= turning + self._rolling
         self._rolling = 0.0
         self._facing = self._passages.facing(move, path, self._facing) if ahead is None else None
+        self._push = self._passages.push(move, path, self._push)
         if ahead is not None:
             seconds -= ahead.settling + ahead.overlap / 2.0
             self._rolling = ahead.overlap / 2.0

@@ -172,13 +172,14 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
     """
     rates, legs = kinematics.rates(move.speed), list(pairwise(path))
     soonest = rates.soonest()
-    quickest = soonest.eased if move.flows else soonest.from_stop_to_stop
-    faced = (kinematics.facing, *(bearing(a, b) for a, b in legs))
-    return MoveSeconds(
-        sum(quickest(a, b) for a, b in legs),
-        sum(rates.from_stop_to_stop(*leg, facing) for leg, facing in zip(legs, faced, strict=False)),
-        sum(rates.latest().from_stop_to_stop(a, b) for a, b in legs),
-    )
+    latest, facing, push = rates.latest(), kinematics.facing, kinematics.push
+    least = expected = most = 0.0
+    for leg in legs:
+        least += soonest.eased(*leg) if move.flows else soonest.from_stop_to_stop(*leg, push=push)
+        expected += rates.from_stop_to_stop(*leg, facing, push)
+        most += latest.from_stop_to_stop(*leg, push=push)
+        facing, push = bearing(*leg), rates.push(*leg, push)
+    return MoveSeconds(least, expected, most)
 
 
 def stays(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:

@@ -41,7 +41,7 @@ def flown(profile, to: Vector, speed: float) -> float:
     return steps * STEP
 
 
-@pytest.mark.parametrize("profile", [ARDUCOPTER], ids=lambda each: each.name)
+@pytest.mark.parametrize("profile", [ARDUCOPTER, PX4_MULTICOPTER], ids=lambda each: each.name)
 @given(places, st.floats(1.0, 10.0))
 @example(HERE, 5.0)
 @example((0.0, 0.5, 20.0), 5.0)
@@ -108,6 +108,38 @@ def test_no_leg_that_is_cut_short_at_both_ends_is_quicker_than_its_bound(metres,
     curve = replace(rates, timing=replace(rates.timing, still=0.0, lag=0.0, settling=0.0, unlimited=None))
     whole = level_leg(curve, metres + 2.0 * jerk * end**3 / 6.0)
     assert level_leg(rates.soonest(), metres) <= whole - 2.0 * end + 1e-9
+
+
+BACK, FURTHER = (0.0, 0.0, -5.0), (60.0, 0.0, -5.0)
+AFTER_LONG_LEGS = [
+    (1.35, BACK, 30.0, 36.0),
+    (1.35, BACK, 20.0, 28.0),
+    (1.05, FURTHER, 51.42, 51.5),
+    (1.35, FURTHER, 1.0, 5.0),
+]
+"""Commanded speed, where a leg of a mission led after one of 30 m, its metres, and the seconds it took."""
+
+
+def after_a_long_leg(speed, towards, metres, bound=0):
+    """Return the seconds of a leg of an ArduSub's mission after one of 30 m."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "sub")
+    rates = Rates(speed, 1.05, 1.5, autopilot.mission, bound=bound)
+    begin, middle = (0.0, 0.0, -5.0), (30.0, 0.0, -5.0)
+    end = (30.0 + (metres if towards == FURTHER else -metres), 0.0, -5.0)
+    return rates.from_stop_to_stop(middle, end, push=rates.push(begin, middle, (0.0, 0.0)))
+
+
+@pytest.mark.parametrize(("speed", "towards", "metres", "seconds"), AFTER_LONG_LEGS)
+def test_a_submarine_makes_use_of_the_thrust_for_the_leg_before_or_must_lose_it(
+    speed, towards, metres, seconds
+):
+    assert after_a_long_leg(speed, towards, metres) == pytest.approx(seconds, rel=0.15)
+
+
+@pytest.mark.parametrize(("metres", "seconds"), [(1.0, 33.0), (2.0, 22.5), (5.0, 14.0)])
+def test_a_short_leg_back_of_a_submarines_mission_may_wait_at_its_end(metres, seconds):
+    assert seconds <= after_a_long_leg(1.35, BACK, metres, bound=1) <= 1.6 * seconds
+    assert after_a_long_leg(1.35, FURTHER, metres, bound=1) < 11.0
 
 
 def test_a_type_that_states_less_acceleration_goes_no_less_beyond_its_targets():
