@@ -99,6 +99,7 @@ class Travel:
         margin: metres that the vehicle keeps from what it perceives itself, at least.
         turning_radius: of its narrowest curve, metres; 0: it turns on its own.
         climb, descent: its type's largest vertical speeds, metres per second; None where unknown.
+        turn_rate: its type's largest, degrees per second; None where unknown.
     """
 
     mode: str = "NORMAL"
@@ -108,6 +109,7 @@ class Travel:
     turning_radius: float = 0.0
     climb: float | None = None
     descent: float | None = None
+    turn_rate: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,9 +56,12 @@ def test_an_owner_who_is_more_careful_is_left_so(told):
 
 
 def test_a_vehicle_climbs_and_descends_no_faster_than_its_type(told):
-    found, said = told(Travel(climb=0.4, descent=2.0), "sub")
+    found, said = told(Travel(climb=0.4, descent=2.0, turn_rate=20.0), "sub")
     assert (found["WPNAV_SPEED_UP"], found["WPNAV_SPEED_DN"]) == (40.0, 150.0)
-    assert said == ["WPNAV_SPEED_UP = 40, which was 250: it climbs at 0.4 m/s, as its type states"]
+    assert said == [
+        "WPNAV_SPEED_UP = 40, which was 250: it climbs at 0.4 m/s, as its type states",
+        "ATC_SLEW_YAW = 2000, which was 6000: it turns at 20°/s, as its type states",
+    ]
 
 
 def test_an_aggressive_robot_leaves_the_owners_margin(told):

@@ -171,7 +171,7 @@ class MavlinkPython(PythonDriver[VehicleContext]):
         turning_radius = 0.0 if kinematics is None else kinematics.turning_radius
         if turning_radius > 0.0:
             how.append(("turning_radius", turning_radius))
-        how += _vertical_speeds(context)
+        how += _largest_rates(context)
         yield "travel", Call("Travel", (robot.travel_mode,), tuple(how))
         yield "runs", tuple(_run(run, robot) for run in runs_of(context, turning_radius))
         yield (
@@ -260,12 +260,13 @@ def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
     yield "fastest", metres(capability.speed[1])
 
 
-def _vertical_speeds(context: VehicleContext) -> Iterator[tuple[str, float]]:
-    """Yield the robot type's largest vertical speeds, as far as it states them."""
+def _largest_rates(context: VehicleContext) -> Iterator[tuple[str, float]]:
+    """Yield the robot type's largest vertical speeds and turn rate, as far as it states them."""
     capability = capability_of(context.robot, context.type) if context.type is not None else None
     if capability is not None and not context.profile.drives:
-        known = (("climb", capability.climb_rate), ("descent", capability.descent_rate))
-        yield from ((name, speed) for name, speed in known if speed is not None)
+        upright = (("climb", capability.climb_rate), ("descent", capability.descent_rate))
+        known = (*upright, ("turn_rate", capability.turn_rate))
+        yield from ((name, rate) for name, rate in known if rate is not None)
 
 
 def _run(run: MoveRun, robot: RobotProgram) -> Call:

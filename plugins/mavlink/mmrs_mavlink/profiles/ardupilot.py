@@ -119,11 +119,16 @@ FARTHEST = "RALLY_LIMIT_KM"
 
 DELAY = Delay("FS_GCS_TIMEOUT", 2.0, 120.0)
 _CENTIMETRES = 100.0
+"""And hundredths of degrees."""
+
 _RADII = {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES}
 """Names of the radius in versions before and since 4.7, with their units in a metre."""
 
 _CLIMBS, _DESCENTS = {"WPNAV_SPEED_UP": _CENTIMETRES}, {"WPNAV_SPEED_DN": _CENTIMETRES}
 """Obeyed at once, in GUIDED and AUTO (``AC_WPNav::update_wpnav``); an ArduSub obeys no other."""
+
+_YAW_RATES = {"ATC_SLEW_YAW": _CENTIMETRES}
+"""Obeyed in GUIDED and AUTO (``AC_AttitudeControl::get_slew_yaw_max_degs``)."""
 
 NOTHING = "no failsafe set"
 _LANDING = {1: "return, or land", 2: "land", 3: "SmartRTL, else RTL, else land"}
@@ -272,6 +277,7 @@ ARDUCOPTER = VehicleProfile(
     radii=_RADII,
     climbs=_CLIMBS,
     descents=_DESCENTS,
+    yaw_rates=_YAW_RATES,
     corridor=8.0,
     down="LAND",
     rests={"LAND": modes.LAND, "SURFACE": modes.HOLD},
@@ -320,6 +326,7 @@ ARDUSUB = VehicleProfile(
     radii=_RADII,
     climbs=_CLIMBS,
     descents=_DESCENTS,
+    yaw_rates=_YAW_RATES,
     highest_item=-0.01,
     watches_jumps=False,
     down="SURFACE",

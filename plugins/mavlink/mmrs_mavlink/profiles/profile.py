@@ -158,6 +158,7 @@ class VehicleProfile:
         stops_early: whether it stops as soon as it is within the radius of its target.
         radii: parameters for the radius of waypoints, with their units in a metre.
         climbs, descents: parameters for its vertical speeds, with their units in a metre per second.
+        yaw_rates: parameters for its turn rate, with their units in a degree per second.
         corridor: metres that it is beside its legs at most, in corners and gusts.
         highest_item: metres above home, of items of its missions; None: unlimited.
         watches_jumps: whether a position that leaps is a fault.
@@ -200,6 +201,7 @@ class VehicleProfile:
     radii: Mapping[str, float] = field(default_factory=dict)
     climbs: Mapping[str, float] = field(default_factory=dict)
     descents: Mapping[str, float] = field(default_factory=dict)
+    yaw_rates: Mapping[str, float] = field(default_factory=dict)
     corridor: float = 20.0
     highest_item: float | None = None
     watches_jumps: bool = True

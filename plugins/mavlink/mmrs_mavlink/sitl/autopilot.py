@@ -26,6 +26,9 @@ DIGICAM, TRIGGER_DISTANCE, IMAGE = 203, 206, 2000
 SHUTTER = {DIGICAM: 4, TRIGGER_DISTANCE: 2}
 """Index of the parameter that is 1 where a command takes a photo at once; IMAGE_START_CAPTURE always does."""
 
+FASTEST_TURN = 90.0
+"""Degrees per second at which a vehicle without a parameter for that turns."""
+
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 STREAM_SECONDS, STREAM_GAP = 1.0, 0.5
 """PX4 accepts set-points that have come for a second, with gaps of at most half a second."""
@@ -216,6 +219,8 @@ class SimulatedAutopilot:
         body, pacing = self.body, self.settings.profile.pacing
         body.curved = mode in CURVED or not (self.flies or mode in MANUAL)
         legs = pacing.step if self.flies and not body.curved else pacing.mission
+        if mode == "take_off":
+            legs = pacing.upright
         body.figures = legs or pacing.step
         body.radius = self._value(self.settings.profile.radii)
         keeps = mode == "auto" and self.settings.profile.autopilot.missions.keeps_speed
@@ -223,6 +228,7 @@ class SimulatedAutopilot:
         speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
         body.speed = (speeds or [self.usual_speed()])[-1]
         body.climb, body.descent = self._value(self.settings.profile.climbs), self.usual_descent()
+        body.turn_rate = min(self._value(self.settings.profile.yaw_rates), FASTEST_TURN)
 
     def usual_speed(self) -> float:
         """Return the default speed, metres per second."""

@@ -41,11 +41,11 @@ _COMMON: Mapping[str, float] = {
 }
 """Every device that a program may use is set up: two cameras, of which the second records videos."""
 
-_UPRIGHT = {"WPNAV_SPEED_UP": 250.0, "WPNAV_SPEED_DN": 150.0}
+_RATES = {"WPNAV_SPEED_UP": 250.0, "WPNAV_SPEED_DN": 150.0, "ATC_SLEW_YAW": 6000.0}
 _AVOIDING = {"AVOID_MARGIN": 2.0, "OA_TYPE": 0, "OA_MARGIN_MAX": 5.0}
 _COPTER: Mapping[str, float] = {
     **_AVOIDING,
-    **_UPRIGHT,
+    **_RATES,
     "FS_OPTIONS": 16,
     "FS_EKF_ACTION": 1,
     "DISARM_DELAY": 10,
@@ -64,7 +64,7 @@ _ROVER: Mapping[str, float] = {
     "WP_RADIUS": 2.0,
 }
 _SUB: Mapping[str, float] = {
-    **_UPRIGHT,
+    **_RATES,
     "FS_GCS_ENABLE": 1,
     "FS_GCS_TIMEOUT": 3.0,
     "FS_EKF_ACTION": 0,
@@ -82,6 +82,7 @@ _PX4: Mapping[str, float] = {
     "NAV_ACC_RAD": 2.0,
     "MPC_Z_V_AUTO_UP": 3.0,
     "MPC_Z_V_AUTO_DN": 1.5,
+    "MPC_YAWRAUTO_MAX": 45.0,
     "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
     "MPC_XY_CRUISE": 5.0,

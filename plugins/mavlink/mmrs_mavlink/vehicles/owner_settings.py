@@ -12,8 +12,8 @@ It is as careful as the robot's travel mode asks, never less than its owner has 
 mission count as passed within a radius, which is reduced where the mode asks for that; one that stops
 within that radius of its target is given no more than the acceptance radius. What it keeps from what it
 perceives is increased. Whether it avoids anything at all is its owner's business, since a vehicle that
-leaves its path leaves what was verified. It climbs and descends no faster than its type states: level
-speeds are commanded with each target, but an ArduSub takes vertical ones from its parameters only.
+leaves its path leaves what was verified. It climbs, descends and turns no faster than its type states: level
+speeds are commanded with each target, but an ArduSub takes others from its parameters only.
 """
 
 from __future__ import annotations
@@ -200,13 +200,14 @@ def set_up(link: Link, travel: Travel, acceptance: float = inf) -> Iterator[str]
     profile, mode = link.profile, f"it travels {travel.mode}"
     radius = min(travel.radius, acceptance) if profile.stops_early else travel.radius
     most = {name: (radius * unit, mode) for name, unit in profile.radii.items()}
-    for units, speed, word in (
-        (profile.climbs, travel.climb, "climbs"),
-        (profile.descents, travel.descent, "descends"),
+    for units, rate, how in (
+        (profile.climbs, travel.climb, "climbs at {:g} m/s"),
+        (profile.descents, travel.descent, "descends at {:g} m/s"),
+        (profile.yaw_rates, travel.turn_rate, "turns at {:g}°/s"),
     ):
-        if speed is not None:
-            why = f"it {word} at {speed:g} m/s, as its type states"
-            most |= {name: (speed * unit, why) for name, unit in units.items()}
+        if rate is not None:
+            why = f"it {how.format(rate)}, as its type states"
+            most |= {name: (rate * unit, why) for name, unit in units.items()}
     least = {name: (travel.margin, mode) for name in profile.autopilot.margins}
     found = parameters.read(link, [*most, *least])
     for name, value in found.items():
