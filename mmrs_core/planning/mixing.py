@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from itertools import product
+from functools import cache, partial
+from itertools import permutations
 from typing import TypeAlias
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.materials import Layout, Material, lay_out
 from mmrs_core.planning.omissions import amount_left_out
 from mmrs_core.planning.remainders import Remainders, Turn
-from mmrs_core.planning.sharing import CLOSE, ShareCandidate, Sharing, share_out
+from mmrs_core.planning.sharing import RowFilling, Share, ShareCandidate, fillings
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.scene import Work
 
 Runs: TypeAlias = tuple[tuple[int, int, int], ...]
 """(sort, first portion, last portion) of those who choose first, in their order."""
 
-_MIXES = 3
+MIXES = 3
 """Mixes at most that are tried for one number of robots."""
 
 
@@ -59,6 +59,7 @@ class Mixture:
         task: str,
         sorts: Sequence[WorkGroup],
         pilots: Mapping[str, Pilot],
+        kinds: Mapping[str, str],
         divide: Callable[[Work, Sequence[str]], Layout],
     ) -> None:
         """Make it.
@@ -67,10 +68,11 @@ class Mixture:
             task: its name.
             sorts: whose works are comparable.
             pilots: by name of robot.
+            kinds: by name of robot: the first that does all as it does.
             divide: makes a layout of a part of the work of a group.
         """
         self.sorts = sorted(sorts, key=lambda each: -amount_left_out(each.work))
-        self._task, self._pilots, self._divide = task, pilots, divide
+        self._task, self._pilots, self._kinds, self._divide = task, pilots, kinds, divide
         self._remainders: Remainders | None = None
         self._rests: dict[tuple[int, Runs], _Rest] = {}
         self._materials: dict[tuple[str, Runs, bool], Material | None] = {}
@@ -99,12 +101,12 @@ class Mixture:
 
     def material(self, robot: str, sort: int, runs: Runs, *, backwards: bool = False) -> Material | None:
         """Return the material of what runs of others leave for a robot; None if it cannot get there."""
-        key = (robot, runs, backwards)
+        key = (self._kinds[robot], runs, backwards)
         if key not in self._materials:
             rest, made = self.rest(sort, runs), None
             if rest.parts and (rest.layout.can_turn or not backwards):
                 try:
-                    pilot = self._pilots[robot]
+                    pilot = self._pilots[self._kinds[robot]]
                     made = lay_out(self._task, rest.work, rest.layout, pilot, backwards=backwards)
                 except UnreachableError:
                     made = None
@@ -112,121 +114,123 @@ class Mixture:
         return self._materials[key]
 
 
-def share_mixed(
-    mixture: Mixture,
-    groups: Sequence[Sequence[ShareCandidate]],
-    *,
-    everyone: bool = False,
-    record: bool = False,
-) -> Sharing | None:
-    """Return the best way found to share a task out among sorts of robots; None if they cannot do it.
-
-    Robots of the first sort take so many portions from the beginning of their work, or up to its end,
-    that they are back when the others are, who do what they leave; found by bisection, sort by sort.
-
-    Args:
-        mixture: of the task.
-        groups: by sort of the mixture: robots that take part, with their material of the whole task.
-        everyone: whether each robot must have a share.
-        record: see `PortionRun`.
-    """
-    some = [(sort, group) for sort, group in enumerate(groups) if group]
-    return _Mixing(mixture, everyone, record).best(some, ())
-
-
 @cache
 def mixes(sizes: tuple[int, ...], robots: int) -> list[tuple[int, ...]]:
     """Return how many robots of each sort may make up so many, of two sorts at least, evenest first.
+
+    These are as many as each sort's part of all robots, and those with one robot of another sort instead.
 
     >>> mixes((2, 1), 2)
     [(1, 1)]
     >>> mixes((3, 2), 3)
     [(2, 1), (1, 2)]
     """
-    found = [
-        counts
-        for counts in product(*(range(size + 1) for size in sizes))
-        if sum(counts) == robots and sum(map(bool, counts)) > 1
+    shares = [robots * size / sum(sizes) for size in sizes]
+    even = [int(share) for share in shares]
+    by_rest = sorted(range(len(sizes)), key=lambda sort: even[sort] - shares[sort])
+    for sort in by_rest[: robots - sum(even)]:
+        even[sort] += 1
+    others = [
+        tuple(count + (sort == more) - (sort == less) for sort, count in enumerate(even))
+        for more, less in permutations(range(len(sizes)), 2)
+        if even[less] and even[more] < sizes[more]
     ]
-    whole = sum(sizes)
-    found.sort(
-        key=lambda counts: sum((c - robots * s / whole) ** 2 for c, s in zip(counts, sizes, strict=True))
-    )
-    return found[:_MIXES]
+    others.sort(key=lambda counts: sum((c - share) ** 2 for c, share in zip(counts, shares, strict=True)))
+    return [counts for counts in (tuple(even), *others) if sum(map(bool, counts)) > 1][:MIXES]
 
 
 _Group: TypeAlias = tuple[int, Sequence[ShareCandidate]]
+"""A sort of a mixture, and those of its robots that take part, with their material of the whole task."""
 
 
-class _Mixing:
-    def __init__(self, mixture: Mixture, everyone: bool, record: bool) -> None:
-        self._mixture, self._everyone, self._record = mixture, everyone, record
+class MixedFilling:
+    """Fills robots sort by sort: each does what it can by a time, the last one all that the others leave."""
 
-    def best(self, groups: Sequence[_Group], runs: Runs) -> Sharing | None:
-        """Return how groups share what runs of others leave."""
-        sort, group = groups[0]
-        candidates = group if not runs else self._of_rest(sort, group, runs)
-        if not candidates:
-            return None
-        if len(groups) == 1:
-            return share_out(candidates, everyone=self._everyone, record=self._record)
-        found = [self._balanced(candidates, groups, runs, ahead=ahead) for ahead in (True, False)]
-        return min((each for each in found if each), key=lambda each: each.back, default=None)
+    def __init__(
+        self, mixture: Mixture, groups: Sequence[_Group], *, ahead: bool, everyone: bool = False
+    ) -> None:
+        """Make it.
+
+        Args:
+            mixture: of the task.
+            groups: of two sorts at least, in their order.
+            ahead: whether each sort begins at the beginning of its work; else it does the end of it.
+            everyone: whether each robot must have a share.
+        """
+        self._mixture, self._groups, self._ahead, self._everyone = mixture, groups, ahead, everyone
+        self.begin = min(each.state.time for _, group in groups for each in group)
+        self._fillings: dict[tuple[int, Runs], list[RowFilling]] = {}
+
+    def shares(self, limit: float) -> list[Share]:
+        """Return shares of all the work after which robots are back by a time; none if they cannot be."""
+        runs: Runs = ()
+        found: list[Share] = []
+        last = len(self._groups) - 1
+        for index, (sort, _) in enumerate(self._groups):
+            if not self._mixture.rest(sort, runs).parts:
+                return [] if self._everyone else found
+            ways = self._fillings_of(index, runs)
+            if index == last:
+                return next(([*found, *mine] for each in ways if (mine := each.shares(limit))), [])
+            mine = self._most(index, runs, ways, limit)
+            if mine:
+                runs = (*runs, self._run(index, mine))
+                found += mine
+            elif self._everyone:
+                return []
+        return found
+
+    def _most(self, index: int, runs: Runs, ways: Sequence[RowFilling], limit: float) -> list[Share]:
+        """Return shares of as many portions as a group does by a time and leaves enough for the next."""
+        most = max((each.portions for each in ways), default=0) - self._everyone
+        while True:
+            mine = max((self._taken(each, limit, most) for each in ways), key=_portions, default=[])
+            if not mine or self._leaves_enough(index, (*runs, self._run(index, mine))):
+                return mine
+            most = _portions(mine) // 2
+
+    def _run(self, index: int, mine: Sequence[Share]) -> tuple[int, int, int]:
+        return self._groups[index][0], mine[0].run.begin, mine[-1].end
+
+    def _leaves_enough(self, index: int, runs: Runs) -> bool:
+        """Return whether runs leave a portion for each robot of the next group that must have one."""
+        sort, group = self._groups[index + 1]
+        return not self._everyone or len(self._mixture.rest(sort, runs).layout.portions) >= len(group)
+
+    def _taken(self, filling: RowFilling, limit: float, most: int) -> list[Share]:
+        """Return shares of as many portions, at most some, as robots can do by a time."""
+        count = filling.portions
+        if self._ahead:
+            return filling.part(limit, 0, most)
+        few, found = 0, list[Share]()
+        while few < most:
+            middle = (few + most + 1) // 2
+            if mine := filling.whole(limit, count - middle, count):
+                few, found = middle, mine
+            else:
+                most = middle - 1
+        return found
+
+    def _fillings_of(self, index: int, runs: Runs) -> list[RowFilling]:
+        """Return the ways in which a group may do what runs of others leave."""
+        if (index, runs) not in self._fillings:
+            sort, group = self._groups[index]
+            candidates = self._of_rest(sort, group, runs) if runs else group
+            ways = fillings(candidates, everyone=self._everyone) if candidates else []
+            self._fillings[index, runs] = ways
+        return self._fillings[index, runs]
 
     def _of_rest(self, sort: int, group: Sequence[ShareCandidate], runs: Runs) -> list[ShareCandidate]:
         found = []
         for each in group:
-            name = each.pilot.robot.name
-            forwards = self._mixture.material(name, sort, runs)
-            if forwards is not None:
-                backwards = self._mixture.material(name, sort, runs, backwards=True)
-                found.append(replace(each, forwards=forwards, backwards=backwards))
+            lay_out_rest = partial(self._mixture.material, each.pilot.robot.name, sort, runs)
+            if (forwards := lay_out_rest()) is not None:
+                backwards = partial(lay_out_rest, backwards=True)
+                found.append(
+                    ShareCandidate(each.pilot, each.state, each.ready, forwards, backwards, each.record)
+                )
         return found if len(found) == len(group) or not self._everyone else []
 
-    def _balanced(
-        self, candidates: Sequence[ShareCandidate], groups: Sequence[_Group], runs: Runs, *, ahead: bool
-    ) -> Sharing | None:
-        """Return the sharing in which the first group takes as many portions as all end early with."""
-        (sort, _), *others = groups
-        count = len(candidates[0].forwards)
-        low, high = (len(candidates) if self._everyone else 1), count
-        best: Sharing | None = None
-        size = (low + high) // 2
-        while low <= high:
-            first = 0 if ahead else count - size
-            taken: Runs = (*runs, (sort, first, first + size - 1))
-            mine = rest = None
-            if enough := self._are_enough(others, taken):
-                mine = self._alone(candidates, first, size)
-                rest = None if mine is None else self.best(others, taken)
-            if mine is not None and rest is not None:
-                back = max(mine.back, rest.back)
-                if best is None or back < best.back - 1e-9:
-                    best = Sharing((*mine.shares, *rest.shares), back)
-                if abs(mine.back - rest.back) <= CLOSE * back:
-                    break
-            if not enough or mine is None or (rest is not None and mine.back > rest.back):
-                high = size - 1
-            else:
-                low = size + 1
-            size = (low + high) // 2
-        return best
 
-    def _are_enough(self, groups: Sequence[_Group], runs: Runs) -> bool:
-        """Return whether runs leave portions for the next group, one for each robot that must have one."""
-        sort, group = groups[0]
-        return len(self._mixture.rest(sort, runs).layout.portions) >= (len(group) if self._everyone else 1)
-
-    def _alone(self, candidates: Sequence[ShareCandidate], first: int, size: int) -> Sharing | None:
-        """Return how one group shares a run of its portions."""
-        count = len(candidates[0].forwards)
-        last = first + size - 1
-        mine = [
-            replace(
-                each,
-                forwards=each.forwards.only(first, last),
-                backwards=each.backwards and each.backwards.only(count - 1 - last, count - 1 - first),
-            )
-            for each in candidates
-        ]
-        return share_out(mine, everyone=self._everyone, record=self._record)
+def _portions(shares: Sequence[Share]) -> int:
+    return shares[-1].end - shares[0].run.begin + 1 if shares else 0

@@ -41,7 +41,10 @@ def paced(parts: Sequence[Stroke], pilot: Pilot, *, soonest: bool = False) -> li
     for chain in _chains(parts):
         if here is not None:
             now += pilot.hop_seconds(here, chain[0], soonest=soonest)
-        spans += [(now + begin, now + end) for begin, end in _of_chain(chain, pilot, soonest)]
+        key = (soonest, tuple(chain))
+        if (known := pilot.paces.get(key)) is None:
+            known = pilot.paces[key] = _of_chain(chain, pilot, soonest)
+        spans += [(now + begin, now + end) for begin, end in known]
         now, here = spans[-1][1], chain[-1].points[-1]
     return spans
 

@@ -9,9 +9,8 @@ from math import inf
 
 from mmrs_core.planning.choices import carry_out
 from mmrs_core.planning.jobs import Job
-from mmrs_core.planning.mixing import mixes, share_mixed
-from mmrs_core.planning.runs import PortionRun
-from mmrs_core.planning.sharing import ShareCandidate, Sharing, share_out
+from mmrs_core.planning.mixing import MixedFilling, mixes
+from mmrs_core.planning.sharing import Filling, ShareCandidate, Sharing, earliest, fillings
 from mmrs_core.planning.states import Ready, State
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.turns import JobResult, States, TurnShare, in_turns, turn_of
@@ -156,12 +155,11 @@ class _Scheduling:
 
     def _shared(self, job: Job) -> JobResult | None:
         if self._decisions.in_turns:
-            tried = [self._in_turns(each) for each in self._sharings(job)]
+            tried = [self._in_turns(found) for each in self._fillings(job) if (found := earliest(each))]
             return min((each for each in tried if each is not None), key=lambda each: each.back, default=None)
         best: Sharing | None = None
-        for each in self._sharings(job):
-            if best is None or each.back < best.back - 1e-6:
-                best = each
+        for each in self._fillings(job):
+            best = earliest(each, inf if best is None else best.back - 1e-6) or best
         return None if best is None else self._at_once(best)
 
     def _at_once(self, sharing: Sharing) -> JobResult:
@@ -224,21 +222,19 @@ class _Scheduling:
         group = self._decisions.groups.get(job.name)
         return group if isinstance(group, tuple) else self._team.pilots
 
-    def _sharings(self, job: Job) -> Iterator[Sharing]:
+    def _fillings(self, job: Job) -> Iterator[Filling]:
+        """Yield the ways worth a try to share a job out."""
         task = self._tasks[job.name]
         for group in self._team.groups[job.name]:
-            candidates = self._candidates(job, task, group)
-            for some, everyone in self._choices_of(task, candidates):
-                found = share_out(some, everyone=everyone, record=self._record)
-                if found is not None:
-                    yield found
+            for some, everyone in self._choices_of(task, self._candidates(job, task, group)):
+                yield from fillings(some, everyone=everyone)
+        everyone = task.wanted is not None
         for mixture in self._team.mixtures[job.name]:
             groups = [self._candidates(job, task, each.robots) for each in mixture.sorts]
             for mixed in self._mixes_of(task, groups):
-                everyone = task.wanted is not None
-                found = share_mixed(mixture, mixed, everyone=everyone, record=self._record)
-                if found is not None:
-                    yield found
+                some_sorts = [(sort, group) for sort, group in enumerate(mixed) if group]
+                for ahead in (True, False):
+                    yield MixedFilling(mixture, some_sorts, ahead=ahead, everyone=everyone)
 
     def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[ShareCandidate]:
         """Return the allowed robots of a group, those first that are first back from the first portion."""
@@ -252,9 +248,9 @@ class _Scheduling:
                 continue
             pilot, state = self._team.pilots[name], self._states[name]
             ready = self._ready(job, name, task.earliest)
-            run = PortionRun(pilot, forwards, state, 0, ready, record=False)
-            each = ShareCandidate(pilot, state, ready, forwards, self._team.backwards(job.name, name))
-            found.append((run.back(0), each))
+            backwards = partial(self._team.backwards, job.name, name)
+            each = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
+            found.append((each.run(0).back(0), each))
         return [each for _, each in sorted(found, key=lambda pair: pair[0])]
 
     def _choices_of(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from itertools import permutations
 from math import dist, inf
+from typing import Protocol
 
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import PortionRun
@@ -13,11 +14,11 @@ from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import Ready, State
 
 _HALVINGS = 12
-CLOSE = 4e-3
+_CLOSE = 4e-3
 """Share of the time within which two ways of sharing out are alike."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ShareCandidate:
     """A robot that may take a share.
 
@@ -26,14 +27,35 @@ class ShareCandidate:
         state: in which it would begin.
         ready: what it would wait for.
         forwards: the material in its own direction.
-        backwards: in the other direction; None where the work has only one.
+        backwards: lays it out in the other direction; None where the work has only one.
+        record: see `PortionRun`.
     """
 
     pilot: Pilot
     state: State
     ready: Ready
     forwards: Material
-    backwards: Material | None
+    backwards: Callable[[], Material | None]
+    record: bool
+    _runs: dict[int, PortionRun] = field(default_factory=dict)
+
+    def run(self, begin: int) -> PortionRun:
+        """Return the robot's run from a portion on, made when it is first asked for."""
+        if begin not in self._runs:
+            self._runs[begin] = self._run(self.forwards, begin)
+        return self._runs[begin]
+
+    def _run(self, material: Material, begin: int) -> PortionRun:
+        return PortionRun(self.pilot, material, self.state, begin, self.ready, record=self.record)
+
+    def turned(self, share: Share) -> Share:
+        """Return its share in the direction in which it is back sooner."""
+        backwards = self.backwards()
+        if backwards is None:
+            return share
+        begin, end = len(backwards) - 1 - share.end, len(backwards) - 1 - share.run.begin
+        run = self._run(backwards, begin)
+        return Share(self, run, end) if run.back(end) < share.back - 1e-6 else share
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,25 +80,52 @@ class Sharing:
     back: float
 
 
-def share_out(
-    candidates: Sequence[ShareCandidate], *, everyone: bool = False, record: bool = False
-) -> Sharing | None:
-    """Return the best way found to share out a work; None if these robots cannot do it.
+class Filling(Protocol):
+    """A way to share a work out among robots.
 
-    Robots take runs of portions one after the other; the time by which all must be back is halved
-    down until they no longer can. Exact for each order of robots but for the size of portions.
+    Attributes:
+        begin: seconds at which the first of them would set out.
+    """
+
+    begin: float
+
+    def shares(self, limit: float) -> Sequence[Share]:
+        """Return shares of all the work after which robots are back by a time; none if they cannot be."""
+
+
+def earliest(filling: Filling, limit: float = inf) -> Sharing | None:
+    """Return shares of all the work after which all are back as early as can be; None if not by a limit.
+
+    The time by which all must be back is halved down until they no longer can.
+    """
+    found = filling.shares(limit)
+    if not found:
+        return None
+    low, back = filling.begin, _back(found)
+    for _ in range(_HALVINGS):
+        if back - low <= _CLOSE * back:
+            break
+        middle = (low + back) / 2
+        if better := filling.shares(middle):
+            found, back = better, _back(better)
+        else:
+            low = middle
+    shares = tuple(share.candidate.turned(share) for share in found)
+    return Sharing(shares, _back(shares))
+
+
+def _back(shares: Sequence[Share]) -> float:
+    return max(share.back for share in shares)
+
+
+def fillings(candidates: Sequence[ShareCandidate], *, everyone: bool = False) -> list[RowFilling]:
+    """Return the ways worth a try to share a work out among robots, all of which have the same portions.
 
     Args:
-        candidates: the robots; all materials have the same portions.
+        candidates: the robots; the order of the first ones along the work is open.
         everyone: whether each robot must have a share.
-        record: see `PortionRun`.
     """
-    best: Sharing | None = None
-    for order in _orders(candidates):
-        found = _Filling(order, everyone, record).best(inf if best is None else best.back)
-        if found is not None and (best is None or found.back < best.back - 1e-9):
-            best = found
-    return best
+    return [RowFilling(order, everyone=everyone) for order in _orders(candidates)]
 
 
 def _orders(candidates: Sequence[ShareCandidate]) -> list[tuple[ShareCandidate, ...]]:
@@ -92,69 +141,43 @@ def _nearest_portion(candidate: ShareCandidate) -> int:
     return min(range(len(material)), key=lambda i: dist(here, material.first(i)))
 
 
-class _Filling:
-    """Fills robots with portions in one order, remembering their runs."""
+class RowFilling:
+    """Fills robots with portions one after the other: exact for an order but for the size of portions."""
 
-    def __init__(self, order: Sequence[ShareCandidate], everyone: bool, record: bool) -> None:
-        self._order, self._everyone, self._record = order, everyone, record
-        self._runs: dict[tuple[int, int], PortionRun] = {}
-        self._count = len(order[0].forwards)
+    def __init__(self, order: Sequence[ShareCandidate], *, everyone: bool) -> None:
+        """Make it for robots in one order, each of which must have a share or not."""
+        self._order, self._everyone = order, everyone
+        self.begin = min(candidate.state.time for candidate in order)
+        self.portions = len(order[0].forwards)
 
-    def best(self, limit: float) -> Sharing | None:
-        """Return the best sharing that is back before a limit; None if there is none."""
-        found = self._fill(limit)
-        if found is None:
-            return None
-        low = min(candidate.state.time for candidate in self._order)
-        for _ in range(_HALVINGS):
-            if found.back - low <= CLOSE * found.back:
-                break
-            middle = (low + found.back) / 2
-            better = self._fill(middle)
-            if better is None:
-                low = middle
-            else:
-                found = better
-        shares = tuple(self._turned(share) for share in found.shares)
-        return Sharing(shares, max(share.back for share in shares))
+    def shares(self, limit: float) -> list[Share]:
+        """Return shares of all portions after which robots are back by a time; none if they cannot be."""
+        return self.whole(limit, 0, self.portions)
 
-    def _fill(self, limit: float) -> Sharing | None:
+    def whole(self, limit: float, first: int, end: int) -> list[Share]:
+        """Return shares of all portions from one to before another; none if they take longer."""
+        found = self.part(limit, first, end)
+        return found if found and found[-1].end == end - 1 else []
+
+    def part(self, limit: float, first: int, end: int) -> list[Share]:
+        """Return shares from one portion on, before another: as many as are done by a time."""
         shares: list[Share] = []
-        waiting = list(range(len(self._order)))
-        begin = 0
-        while begin < self._count:
-            share = self._next_share(waiting, begin, limit)
+        waiting = list(self._order)
+        while first < end:
+            share = self._next_share(waiting, first, end, limit)
             if share is None:
-                return None
+                break
             shares.append(share)
-            begin = share.end + 1
-        if self._everyone and waiting:
-            return None
-        return Sharing(tuple(shares), max(share.back for share in shares))
+            first = share.end + 1
+        return [] if self._everyone and waiting else shares
 
-    def _next_share(self, waiting: list[int], begin: int, limit: float) -> Share | None:
+    def _next_share(self, waiting: list[ShareCandidate], first: int, end: int, limit: float) -> Share | None:
         """Return the share of the first waiting robot that can begin there; it waits no longer."""
         left_for_others = len(waiting) - 1 if self._everyone else 0
-        for place in waiting:
-            run = self._run(place, begin)
-            end = min(run.until(limit), self._count - 1 - left_for_others)
-            if end >= begin:
-                waiting.remove(place)
-                return Share(self._order[place], run, end)
+        for each in waiting:
+            run = each.run(first)
+            last = min(run.until(limit), end - 1 - left_for_others)
+            if last >= first:
+                waiting.remove(each)
+                return Share(each, run, last)
         return None
-
-    def _run(self, place: int, begin: int) -> PortionRun:
-        if (place, begin) not in self._runs:
-            each = self._order[place]
-            self._runs[place, begin] = PortionRun(
-                each.pilot, each.forwards, each.state, begin, each.ready, record=self._record
-            )
-        return self._runs[place, begin]
-
-    def _turned(self, share: Share) -> Share:
-        each = share.candidate
-        if each.backwards is None:
-            return share
-        begin, end = self._count - 1 - share.end, self._count - 1 - share.run.begin
-        run = PortionRun(each.pilot, each.backwards, each.state, begin, each.ready, record=self._record)
-        return Share(each, run, end) if run.back(end) < share.back - 1e-6 else share

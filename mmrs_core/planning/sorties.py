@@ -21,7 +21,11 @@ _SAME = 1e-9
 
 
 class Pilot:
-    """Moves one robot's state on; each action is a short function of the state."""
+    """Moves one robot's state on; each action is a short function of the state.
+
+    Attributes:
+        paces: by (soonest, parts in one go): when each begins and ends, see `paced`.
+    """
 
     def __init__(self, travel: Travel, *, homebound: bool = True) -> None:
         """Make it.
@@ -37,6 +41,7 @@ class Pilot:
         by_energy = self.kinematics.energy / power if power > 0 else inf
         # The check counts with moves that take longer than expected.
         self.limit = min(self.kinematics.endurance, by_energy) / (1.0 + self.kinematics.timing.spread)
+        self.paces: dict[tuple[bool, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
         self._exits: dict[Position, float] = {}
         self._homes: dict[Position, float] = {}
 

@@ -108,7 +108,8 @@ class Team:
             sorts = [self._able(task.name, work, group, robots) for work, group in family]
             groups += [each.robots for each in sorts]
             if len(able := [each for each in sorts if each.robots]) > 1:
-                mixtures.append(Mixture(task.name, able, self.pilots, partial(self._layout, robots=robots)))
+                divide = partial(self._layout, robots=robots)
+                mixtures.append(Mixture(task.name, able, self.pilots, self.kinds, divide))
         self.groups[task.name], self.mixtures[task.name] = tuple(groups), tuple(mixtures)
         found = {name for group in groups for name in group}
         self._able_robots[task.name] = tuple(name for name in self.pilots if name in found)

@@ -104,6 +104,7 @@ class Travel:
         self._leaving: dict[Position, Route | str] = {}
         self._returning: dict[Position, Route | str] = {}
         self._between: dict[tuple[Position, Position], Route | str] = {}
+        self._hops: dict[tuple[Position, Position], Route] = {}
 
     def _within(self, height: float) -> float:
         lowest = max(self.kinematics.floor, self.robot.home[2])
@@ -145,7 +146,10 @@ class Travel:
         Raises:
             UnreachableError: there is none.
         """
-        return self._timed(self.space.route(start, goal))
+        found = self._hops.get((start, goal))
+        if found is None:
+            found = self._hops[start, goal] = self._timed(self.space.route(start, goal))
+        return found
 
     def at_speed(self, route: Route, speed: float | None) -> Route:
         """Return the same route, its route gone at a commanded speed; None: at the robot's cruise."""

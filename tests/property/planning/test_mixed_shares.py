@@ -47,9 +47,9 @@ def check(seed, sorts):
     return True
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_two_sorts_of_robots_cover_a_random_area(seed):
-    assert check(seed, 2)
+@pytest.mark.parametrize(("seed", "sorts"), [(0, 2), (1, 5)])
+def test_sorts_of_robots_cover_a_random_area(seed, sorts):
+    assert check(seed, sorts)
 
 
 @pytest.mark.thorough
