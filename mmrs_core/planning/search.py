@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 from mmrs_core.planning.allocation import allocated
 from mmrs_core.planning.jobs import Job
+from mmrs_core.planning.mixing import MIXES
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.team import Team
 
@@ -20,7 +21,7 @@ _STEPS = 40
 """Schedules that are tried; a count, not a time, so that the same seed gives the same plan."""
 
 _EFFORT = 3000
-"""Jobs times robots times schedules tried, at most, where that is less."""
+"""Schedules tried times their size, see `_size`, at most, where that is less."""
 
 _MOST_PAIRS = 10_000
 """Jobs times robots up to which decisions that leave robots open are tried beside those of tours."""
@@ -57,7 +58,7 @@ def find_decisions(
         tried += [(each, schedule(team, jobs, each)) for each in starts]
     best, found = min(tried, key=lambda pair: cost_of(team, pair[1]))
     random, idle = Random(seed), 0
-    steps = min(_STEPS, max(4, _EFFORT // max(1, len(jobs) * len(team.pilots))))
+    steps = min(_STEPS, max(4, _EFFORT // _size(team, jobs)))
     for step in range(_STEPS_TO_BEGIN if len(jobs) > 1 else 0):
         if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= steps):
             break
@@ -79,7 +80,7 @@ def _with_better_numbers(
     """Return decisions in which each task in turn has the number of robots that helps most."""
     sizes = {job.name: team.sharers(job.name) for job in jobs if job.tasks() and job.choice is None}
     tries = [(name, size) for name, most in sizes.items() for size in range(1, most + 1) if most > 1]
-    for name, size in tries if len(tries) * len(jobs) * len(team.pilots) <= _EFFORT else ():
+    for name, size in tries if len(tries) * _size(team, jobs) <= _EFFORT else ():
         other = replace(best, groups={**best.groups, name: size})
         result = schedule(team, jobs, other)
         if cost_of(team, result) < _slightly_less(cost_of(team, found)):
@@ -192,7 +193,7 @@ def _swapped(team: Team, order: tuple[str, ...], random: Random) -> tuple[str, .
 
 
 _MOST_SEARCHES = 192
-"""Searches times jobs times robots, at most, but always some: what is most promising comes first."""
+"""Searches times the size of a schedule, at most, but always some: what is most promising comes first."""
 
 _FEWEST_SEARCHES = 3
 
@@ -204,13 +205,21 @@ def robot_counts(team: Team, jobs: Sequence[Job]) -> list[Mapping[str, int]]:
     take too long, it is what has the best first schedules of one number for one task, or for all.
     """
     most = {name: largest for name in _open_tasks(team, jobs) if (largest := team.sharers(name)) > 1}
-    room = max(_FEWEST_SEARCHES, _MOST_SEARCHES // max(1, len(jobs) * len(team.pilots)))
+    size = _size(team, jobs)
+    room = max(_FEWEST_SEARCHES, _MOST_SEARCHES // size)
     if prod(largest + 1 for largest in most.values()) <= room + 1:
         choices = product(*([(name, count) for count in range(most[name] + 1)] for name in most))
         asked = [{name: count for name, count in choice if count} for choice in choices]
         return [each for each in asked if each]
-    ranked = sorted(_uniform_counts(most), key=lambda each: first_cost(team.wanting(each), jobs))
-    return ranked[:room]
+    tries = _uniform_counts(most)[: max(room, _EFFORT // size)]
+    return sorted(tries, key=lambda each: first_cost(team.wanting(each), jobs))[:room]
+
+
+def _size(team: Team, jobs: Sequence[Job]) -> int:
+    """Return how large a schedule is: jobs, with the mixes of robots that may share them, times robots."""
+    names = [job.name for job in jobs if job.tasks() and job.choice is None]
+    mixed = sum(MIXES * len(each.sorts) for name in names for each in team.mixtures[name])
+    return max(1, (len(jobs) + mixed) * len(team.pilots))
 
 
 def _uniform_counts(most: Mapping[str, int]) -> list[Mapping[str, int]]:
@@ -219,7 +228,7 @@ def _uniform_counts(most: Mapping[str, int]) -> list[Mapping[str, int]]:
         {name: min(count, largest) for name, largest in most.items()}
         for count in range(1, max(most.values()) + 1)
     ]
-    return [*single, *(alike if len(most) > 1 else ())]
+    return [*(alike if len(most) > 1 else ()), *single]
 
 
 def _open_tasks(team: Team, jobs: Sequence[Job]) -> list[str]:
