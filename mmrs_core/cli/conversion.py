@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated
 from xml.parsers import expat
 
@@ -18,6 +19,7 @@ from mmrs_core.cli.any_model import is_mistake, models_in, read_foreign
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
+from mmrs_core.languages.element import descendants, path_of
 from mmrs_core.languages.foreign import kept_places
 from mmrs_core.languages.metamodels.export import exported_names, schema_locations
 from mmrs_core.languages.metamodels.gathering import gathered
@@ -27,12 +29,17 @@ from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.references.project import files_beside, is_beside
 from mmrs_core.languages.writing import to_json, to_xmi
 from mmrs_core.languages.xmi.events import read_bytes
+from mmrs_core.languages.xmi.markup import Markup
 
 if TYPE_CHECKING:
     from mmrs_core.cli.session import Session
     from mmrs_core.languages.element import Element
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
+
+
+_INDENT = 1000
+"""Bytes of white space at most between a comment and its element."""
 
 
 class Form(StrEnum):
@@ -103,15 +110,53 @@ def targets_in(directory: Path, given: Sequence[Path], form: Form | None) -> dic
     return targets
 
 
-def comments_in(file: Path) -> int:
-    """Return how many comments a model has, which are none of its elements; JSON has no comments."""
-    if form_of(file) is Form.JSON:
-        return 0
-    found: list[str] = []
+@dataclass(frozen=True, slots=True)
+class KeptComments:
+    """The comments of a model in XMI.
+
+    Attributes:
+        kept: those on lines of their own before an element.
+        left: how many stand elsewhere, or are not kept.
+    """
+
+    kept: Mapping[Element, str] = field(default_factory=dict)
+    left: int = 0
+
+
+def comments_of(source: Path, roots: Sequence[Element], form: Form) -> KeptComments:
+    """Return the comments of a model that it has in a form; JSON has none."""
+    data = read_bytes(source)
+    if form_of(source) is Form.JSON or b"<!--" not in data:
+        return KeptComments()
+    count: list[str] = []
     parser = expat.ParserCreate()
-    parser.CommentHandler = found.append
-    parser.Parse(read_bytes(file), True)
-    return len(found)
+    parser.CommentHandler = count.append
+    parser.Parse(data, True)
+    found: dict[Element, list[str]] = {}
+    if form is Form.XMI and len(roots) == 1:
+        lines: dict[int, list[Element]] = {}
+        for each in (*roots, *descendants(roots[0])):
+            lines.setdefault(each._mmrs_line, []).append(each)
+        with suppress(UnreadableError):  # not in UTF-8
+            markup = Markup(data, str(source))
+            for tag in markup.root.everything():
+                if words := list(_comments_before(data, tag.begin)):
+                    beside = lines.get(tag.line, ())
+                    here = [each for each in beside if markup.at(path_of(each), tag.line) is tag]
+                    found |= dict.fromkeys(here[:1], words[::-1])
+    kept = {each: "\n".join(words) for each, words in found.items()}
+    return KeptComments(kept, len(count) - sum(map(len, found.values())))
+
+
+def _comments_before(data: bytes, at: int) -> Iterator[str]:
+    """Yield the comments on lines of their own before a place, the nearest first."""
+    while data[max(at - _INDENT, 0) : at].rstrip()[-3:] == b"-->":
+        begin = data.rfind(b"<!--", 0, at)
+        if data[data.rfind(b"\n", 0, begin) + 1 : begin].strip():
+            return
+        words = data[begin + 4 : data.index(b"-->", begin)].decode()
+        yield "\n".join(line.strip() for line in words.strip().splitlines())
+        at = begin
 
 
 def refuse_existing(targets: Sequence[Path], force: bool) -> None:
@@ -201,9 +246,10 @@ def converted_together(
     for file, target in targets.items():
         roots, form = models[file].roots, form_of(target)
         names = names_for(target, roots, everywhere, registry) if by_name else None
-        text = text_of(roots, registry, file, target, form, exported, names)
+        comments = comments_of(file, roots, form)
+        text = text_of(roots, registry, file, target, form, exported, names, comments.kept)
         count = sum(1 for _ in models[file].elements())
-        made.append(Converted(file, target, form, text, count, tuple(beside), names, comments_in(file)))
+        made.append(Converted(file, target, form, text, count, tuple(beside), names, comments.left))
     return tuple(made), faults
 
 
@@ -247,6 +293,7 @@ def text_of(
     form: Form,
     exported: Path | None,
     names: ReferenceNames | None = None,
+    comments: Mapping[Element, str] = MappingProxyType({}),
 ) -> bytes:
     """Return a model in a form, as it is to stand in a file.
 
@@ -258,14 +305,16 @@ def text_of(
         form: of the text.
         exported: the folder of metamodels that it is to point Eclipse to.
         names: what its references become.
+        comments: on its elements, in XMI.
 
     Raises:
         UnsupportedError: if it cannot be written in that form.
     """
     places = {**kept_places(source, target), **places_in(exported, registry, target)}
-    write = to_json if form is Form.JSON else to_xmi
     try:
-        return write(roots, registry, schema_location=places, file=target, names=names)
+        if form is Form.JSON:
+            return to_json(roots, registry, schema_location=places, file=target, names=names)
+        return to_xmi(roots, registry, schema_location=places, file=target, names=names, comments=comments)
     except ValueError as fault:
         raise UnsupportedError(f"{source}: {fault}") from None
 

@@ -14,7 +14,7 @@ from mmrs_core.cli.conversion import (
     Converted,
     Form,
     SchemaLocation,
-    comments_in,
+    comments_of,
     converted_together,
     form_of,
     is_followed,
@@ -79,9 +79,10 @@ def convert(
 ) -> int:
     """Convert models between XMI and JSON.
 
-    The conversion is lossless but for comments, which do not belong to a model: they are left out, and
-    counted. Models converted together keep their references to each other; all of them are written, or none.
-    References by name become paths, which Eclipse reads, unless --names is given.
+    The conversion is lossless but for comments: JSON has none, and XMI keeps those on lines of their own
+    before an element. Those left out are counted. Models converted together keep their references to each
+    other; all of them are written, or none. References by name become paths, which Eclipse reads, unless
+    --names is given.
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """
@@ -162,29 +163,30 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
     roots, registry, place = found.model.roots, found.registry, target or source
     linked_roots = [each.roots for each in found.model.linked]
     names = names_for(place, roots, [roots, *linked_roots], registry) if asked.by_name else None
-    text = text_of(roots, registry, source, place, form, asked.exported, names)
-    count, comments = sum(1 for _ in found.model.elements()), comments_in(source)
+    comments = comments_of(source, roots, form)
+    text = text_of(roots, registry, source, place, form, asked.exported, names, comments.kept)
+    count = sum(1 for _ in found.model.elements())
     if target is None:
         say_file(text)
         _tell_of_names(names, source)
-        _tell_of_comments(source, comments)
+        _tell_of_comments(source, comments.left)
         return 0
     replace_file(target, text)
     if asked.json:
         said = {"file": target, "form": form.value, "elements": count, **_names_as_json(names)}
-        said["comments_left_out"] = comments
+        said["comments_left_out"] = comments.left
         say_json({**said, "diagnostics": faults})
     else:
         say(f"written: {target} ({counted(count, 'element')})")
         _tell_of_names(names, target)
-        _tell_of_comments(source, comments)
+        _tell_of_comments(source, comments.left)
     _tell_of_kept_links(found, source, target)
     return 0
 
 
 def _tell_of_comments(file: Path, count: int) -> None:
     if count:
-        tell(f"{file}: note: {counted(count, 'comment')} left out: they do not belong to the model")
+        tell(f"{file}: note: {counted(count, 'comment')} left out")
 
 
 def _tell_of_names(names: ReferenceNames | None, file: Path) -> None:

@@ -50,7 +50,7 @@ def test_comments_are_counted_since_they_are_left_out(zoos, capsys):
     known = ["--metamodel", "zoo.ecore"]
     for into in (["-o", "out"], ["b.json"], []):
         assert run(["convert", "a.xmi", *into, *known]) == 0
-        assert "a.xmi: note: 2 comments left out: they do not belong to the model" in capsys.readouterr().err
+        assert "a.xmi: note: 2 comments left out" in capsys.readouterr().err
     assert run(["convert", "a.xmi", "c.json", *known, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["comments_left_out"] == 2
 
@@ -61,6 +61,26 @@ def test_an_output_with_the_suffix_of_a_model_is_a_file(zoos, capsys):
     assert refs(zoos / "c.json") == ["b.xmi#/1"]
     assert run(["convert", "a.xmi", "b.xmi", "-o", "d.json", *known]) == 2
     assert "-o d.json: one file for several models; name an output folder" in capsys.readouterr().err
+
+
+def test_comments_before_elements_stay_in_xmi(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = (DAM / "mission.xmi").read_text(encoding="utf-8").replace("  <team>", "  <team> <!-- aside -->", 1)
+    (tmp_path / "mission.xmi").write_text(
+        text.replace("<!-- 9 -->", "<!-- 9:\n       again -->\n  <!-- & -->")
+    )
+    assert run(["convert", "mission.xmi", "other.xmi"]) == 0
+    assert "mission.xmi: note: 1 comment left out\n" in capsys.readouterr().err
+    lines = [line.strip() for line in (tmp_path / "other.xmi").read_text(encoding="utf-8").splitlines()]
+    assert lines[lines.index("<!-- 9:") :][:4] == [
+        "<!-- 9:",
+        "again",
+        "& -->",
+        lines[lines.index("again") + 2],
+    ]
+    assert lines[1].startswith("<!-- Inspection of a dam")
+    assert sum(line.count("<!--") for line in lines) == text.count("<!--") - 1
+    assert run(["diff", "mission.xmi", "other.xmi"]) == 0
 
 
 def test_back_again_they_say_the_same(zoos, capsys):
@@ -218,6 +238,6 @@ def test_a_name_of_two_elements_is_refused_with_both(named, capsys):
     assert run(["convert", "named", "-o", "out"]) == 1
     said = capsys.readouterr().err
     assert (
-        "named/mission.xmi:19: error: from: 'rows of the south field' is the name of ThermalRowTask" in said
+        "named/mission.xmi:25: error: from: 'rows of the south field' is the name of ThermalRowTask" in said
     )
     assert not (named / "out").exists()
