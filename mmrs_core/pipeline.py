@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from mmrs_core.generation.capabilities.judging import TargetCapability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.planning.effort import Effort
     from mmrs_core.scene import Area, Part, Plan, RobotType, Scene
     from mmrs_core.simulation.run import SimulatedRun
     from mmrs_core.transformation.engine import Trace
@@ -129,11 +130,11 @@ def expand(scene: Scene, contributions: Contributions) -> Scene:
     return expanded(scene, contributions.rules, contributions.robot_kinds, contributions.element_kinds)
 
 
-def plan(scene: Scene, *, seed: int = 0) -> Plan:
+def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     """Return who does what, when and by which way, for an expanded scene."""
     from mmrs_core.planning.planner import plan as planned
 
-    return planned(scene, seed=seed)
+    return planned(scene, seed=seed, effort=effort)
 
 
 def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[bl.Behaviour, Trace]:

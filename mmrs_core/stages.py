@@ -69,7 +69,11 @@ class Stages:
     def plan(self) -> Plan:
         """Return who does what, when and along which path."""
         scene = self.scene
-        return self.stage("plan", lambda: plan(scene, seed=self._seed))
+        return self.stage("plan", lambda: self.planned(scene, self._seed))
+
+    def planned(self, scene: Scene, seed: int) -> Plan:
+        """Return the plan of an expanded scene."""
+        return plan(scene, seed=seed)
 
     @cached_property
     def transformed(self) -> tuple[Behaviour, Trace]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import signal
 import sys
 from _thread import interrupt_main
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from threading import Timer
 from types import FrameType, TracebackType
 from typing import NoReturn
@@ -47,6 +48,25 @@ def interruptible(work: Callable[[], int]) -> int:
         raise
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # nothing is left to be broken off
+
+
+@contextmanager
+def ended_by_interrupt(stop: Callable[[], bool]) -> Iterator[None]:
+    """Have the first interrupt call a function; it interrupts if that returns false, as do all others."""
+    if signal.getsignal(signal.SIGINT) is not _interrupt:
+        yield
+        return
+
+    def end(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, _interrupt)
+        if not stop():
+            _interrupt(number, frame)
+
+    signal.signal(signal.SIGINT, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, _interrupt)
 
 
 def _ended() -> int:

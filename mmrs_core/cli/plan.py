@@ -11,7 +11,7 @@ import typer
 
 from mmrs_core.cli.conversion import SchemaLocation, places_in
 from mmrs_core.cli.output import say, say_json, tell
-from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
+from mmrs_core.cli.parameters import Context, Project, Robots, Seed, TimeLimit, robot_files
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
 from mmrs_core.cli.session import CommandStages, Session, require_safe
@@ -57,6 +57,7 @@ def plan(
     context: Context = None,
     robots: Robots = None,
     seed: Seed = 0,
+    time_limit: TimeLimit = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a behaviour written by hand.")] = False,
     stop_after: Annotated[
         Stage | None,
@@ -67,12 +68,15 @@ def plan(
 ) -> int:
     """Plan a mission and write the robots' behaviour.
 
-    The behaviour is verified first and written only if it passes all checks.
+    The behaviour is verified first and written only if it passes all checks. While it searches, Ctrl-C keeps
+    the best plan found so far; a second Ctrl-C ends the command.
 
     Example: mmrs plan field
     """
     session = Session(settings_of(call))
-    stages = CommandStages(session, project, context=context, robots=robot_files(robots), seed=seed)
+    stages = CommandStages(
+        session, project, context=context, robots=robot_files(robots), seed=seed, time_limit=time_limit
+    )
     if stop_after is not None:
         say_json({"stage": stop_after.value, "value": _VALUES[stop_after](stages)})
         return 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import ceil
 
 from mmrs_core.cli.output import counted, table
 from mmrs_core.pictures.figures import clock, energy, length
@@ -10,6 +11,8 @@ from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
 
 _MOST_NOTES = 4
 _WIDEST = 44
+_TELLING = 1.5
+"""Times the lower bound up to which a mission time is compared with it."""
 
 
 def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
@@ -17,7 +20,7 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
     at_work = sum(bool(robot.steps) for robot in plan.robots)
     yield (
         f"{scene.name or 'mission'}: {counted(len(scene.tasks), 'task')}, "
-        f"{counted(at_work, 'active robot')}, mission time {clock(plan.makespan)}"
+        f"{counted(at_work, 'active robot')}, mission time {clock(plan.makespan)}{_within(plan)}"
     )
     head = ("robot", "type", "tasks", "distance", "time", "energy", "sorties")
     yield from table(head, [_row(scene, robot) for robot in plan.robots], widest=_WIDEST)
@@ -33,11 +36,19 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
         yield f"  and {counted(more, 'more note')}"
 
 
+def _within(plan: Plan) -> str:
+    """Return by how much a plan is longer than any at most, where what is known says something."""
+    if plan.makespan > _TELLING * plan.lower_bound:
+        return ""
+    return f" (within {ceil(100.0 * (plan.makespan / plan.lower_bound - 1.0) - 1e-6)} % of the best possible)"
+
+
 def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
     """Return the plan as JSON has it."""
     return {
         "mission": scene.name,
         "makespan": plan.makespan,
+        "lowerBound": plan.lower_bound or None,
         "robots": [
             {
                 "name": robot.robot,

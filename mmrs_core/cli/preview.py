@@ -17,6 +17,7 @@ from mmrs_core.cli.parameters import (
     Context,
     Robots,
     Seed,
+    TimeLimit,
     behaviour_file,
     robot_files,
     without_mission,
@@ -53,6 +54,7 @@ def preview(
     context: Context = None,
     robots: Robots = None,
     seed: Seed = 0,
+    time_limit: TimeLimit = None,
     assume: Assume = None,
     logs: Annotated[
         list[Path] | None,
@@ -82,7 +84,9 @@ def preview(
             "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"
         )
     else:
-        stages = CommandStages(session, project, context=context, robots=types, seed=seed)
+        stages = CommandStages(
+            session, project, context=context, robots=types, seed=seed, time_limit=time_limit
+        )
         with drawn_on_failure(stages, folder):
             picture = picture_of(stages)
     refuse_inputs((folder / PAGE, folder / MAP), session.inputs)

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.cli.failures import RefusedError
-from mmrs_core.cli.interruption import interrupted
+from mmrs_core.cli.interruption import ended_by_interrupt, interrupted
 from mmrs_core.cli.observers import Observers
 from mmrs_core.cli.output import progress, report, tell
 from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import Status, Verdict
-from mmrs_core.pipeline import BehaviourContext, read_models, refusals, valid_models, verify
+from mmrs_core.pictures.figures import clock
+from mmrs_core.pipeline import BehaviourContext, plan, read_models, refusals, valid_models, verify
+from mmrs_core.planning.effort import Effort
 from mmrs_core.stages import Stages
 
 if TYPE_CHECKING:
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.plugins import Plugins
+    from mmrs_core.scene import Plan, Scene
 
 Result = TypeVar("Result")
 
@@ -46,6 +50,7 @@ class Session:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._inputs: list[Path] = []
+        self.show: Callable[[str], None] = lambda far: None
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -79,7 +84,7 @@ class Session:
         Raises:
             KeyboardInterrupt: also for an interrupt that a library swallowed while the stage was made.
         """
-        with progress(doing):
+        with progress(doing) as self.show:
             result = make()
         if interrupted():
             raise KeyboardInterrupt
@@ -98,8 +103,10 @@ class CommandStages(Stages):
         context: Path | None = None,
         robots: Sequence[Path] = (),
         seed: int = 0,
+        time_limit: float | None = None,
     ) -> None:
         super().__init__(lambda: self._valid[0], session.contributions, seed=seed)
+        self._time_limit = time_limit
         self.session = session
         self._mission = mission
         self._context = context
@@ -107,7 +114,21 @@ class CommandStages(Stages):
 
     def stage(self, name: str, make: Callable[[], Result]) -> Result:
         """Return what a stage makes, after telling the observers of it."""
-        return self.session.stage(name, _DOING[name], make)
+        result = self.session.stage(name, _DOING[name], make)
+        if name == "plan" and self._effort.stopped:
+            tell("interrupted: the best plan by then is kept")
+        return result
+
+    def planned(self, scene: Scene, seed: int) -> Plan:
+        """Return the plan of an expanded scene; the first interrupt keeps the best that was found by then."""
+
+        def show(best: float, least: float) -> None:
+            bound = f", lower bound {clock(least)}" if least else ""
+            self.session.show(f"mission time {clock(best)}{bound}; Ctrl-C keeps the best plan")
+
+        self._effort = Effort(self._time_limit, monotonic, show)
+        with ended_by_interrupt(self._effort.stop):
+            return plan(scene, seed=seed, effort=self._effort)
 
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:

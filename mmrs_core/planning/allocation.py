@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.materials import Material
-from mmrs_core.planning.ruin import Field, Search, Tours
+from mmrs_core.planning.ruin import Search
+from mmrs_core.planning.ruin_loops import Field, Tours
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.team import Team
@@ -44,6 +46,7 @@ _PIECES_PER_TOUR = 3
 """Pieces of a mean tour into which work that robots may share is cut."""
 
 Matrix = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +59,7 @@ class _Stop:
 
 
 def allocated(
-    team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False
+    team: Team, jobs: Sequence[Job], seed: int, effort: Effort, *, long: bool = False, in_turns: bool = False
 ) -> Iterator[tuple[Decisions, Schedule | Shortfall]]:
     """Yield decisions that came of searches for tours, with their schedules; none for few jobs.
 
@@ -64,6 +67,8 @@ def allocated(
         team: of the scene.
         jobs: in an order in which none comes before one that it waits for.
         seed: of the searches.
+        effort: that they may make.
+        long: whether they take all of its time.
         in_turns: see `Decisions`; then only the sum of the tours counts.
     """
     stops = list(_stops(team, jobs))
@@ -72,10 +77,12 @@ def allocated(
     field = _Fields(team, stops).field()
     earliest = field.earliest
     waits = any(job.after for job in jobs)
-    for turn in range(_ROUNDS if waits else 1):
+    rounds = _ROUNDS if waits else 1
+    for turn in range(rounds):
         search = Search(field, seed + turn, (0.0, 1.0) if in_turns else (1.0, 0.1))
-        for _ in search.run(min(_MOST_STEPS, _STEPS_PER_STOP * len(stops))):
-            pass
+        steps = min(_MOST_STEPS, _STEPS_PER_STOP * len(stops))
+        for makespan in search.run(effort.shares(steps, of_the_rest=long / (rounds - turn))):
+            effort.found(makespan)
         decisions = replace(_decisions(team, jobs, stops, search.best), in_turns=in_turns)
         found = schedule(team, jobs, decisions)
         yield decisions, found
@@ -83,9 +90,8 @@ def allocated(
             return
         ends = {name: end for name, (_, end) in found.spans.items()}
         ready = {job.name: max((ends.get(name, 0.0) for name in job.after), default=0.0) for job in jobs}
-        field = replace(
-            field, earliest=[max(own, ready[stop.job]) for own, stop in zip(earliest, stops, strict=True)]
-        )
+        later = [max(own, ready[stop.job]) for own, stop in zip(earliest, stops, strict=True)]
+        field = field._replace(earliest=np.array(later))
 
 
 def _stops(team: Team, jobs: Sequence[Job]) -> Iterator[_Stop]:
@@ -146,20 +152,25 @@ class _Fields:
             work[k, able] = legs.work
             go[k][np.ix_(able, able)] = legs.between()
             out[np.ix_(robots, able)], back[np.ix_(robots, able)] = legs.home()
+        near, near_robots = _nearest(go.min(axis=0)), _nearest_robots(out)
+        others = [self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)]
+        most = max(map(len, others))
+        apart = np.array([[*each, *([-1] * (most - len(each)))] for each in others], np.int64)
         return Field(
-            kinds=kinds,
-            out=out.ravel().tolist(),
-            go=go.ravel().tolist(),
-            back=back.ravel().tolist(),
-            work=work.ravel().tolist(),
-            near=_nearest(go.min(axis=0)),
-            near_robots=_nearest_robots(out),
-            apart=[self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)],
-            limits=[pilot.limit for pilot in self._pilots],
-            recharges=[pilot.kinematics.recharge or 0.0 for pilot in self._pilots],
-            earliest=[task.earliest or 0.0 for task in tasks],
-            deadlines=[inf if task.deadline is None else task.deadline for task in tasks],
-            ranks=[task.priority for task in tasks],
+            sizes=np.array([*out.T.shape, near.shape[1], near_robots.shape[1], most]),
+            kinds=np.array(kinds),
+            out=out.ravel(),
+            go=go.ravel(),
+            back=back.ravel(),
+            work=work.ravel(),
+            near=near.ravel(),
+            near_robots=near_robots.ravel(),
+            apart=apart.ravel(),
+            limits=np.array([pilot.limit for pilot in self._pilots]),
+            recharges=np.array([pilot.kinematics.recharge or 0.0 for pilot in self._pilots]),
+            earliest=np.array([task.earliest or 0.0 for task in tasks]),
+            deadlines=np.array([inf if task.deadline is None else task.deadline for task in tasks]),
+            ranks=np.array([task.priority for task in tasks]),
         )
 
     def _others(self, index: int) -> list[int]:
@@ -261,18 +272,18 @@ def _leg_seconds(rates: Rates, level: Matrix, rise: Matrix) -> Matrix:
     return found
 
 
-def _nearest(go: Matrix) -> list[list[int]]:
+def _nearest(go: Matrix) -> Indices:
     """Return, by stop, the others from which robots come there soonest, or to which they do."""
     both = np.minimum(go, go.T)
     np.fill_diagonal(both, inf)
     count = min(_NEAREST, len(go) - 1)
-    found: list[list[int]] = np.argsort(both, axis=1, kind="stable")[:, :count].tolist()
+    found: Indices = np.argsort(both, axis=1, kind="stable")[:, :count]
     return found
 
 
-def _nearest_robots(out: Matrix) -> list[list[int]]:
+def _nearest_robots(out: Matrix) -> Indices:
     """Return, by stop, the robots that are there soonest; those at one place take turns."""
     robots, stops = out.shape
     turn = (np.arange(robots)[None, :] - np.arange(stops)[:, None]) % robots
-    found: list[list[int]] = np.lexsort((turn, out.T.round(6)), axis=1)[:, :_NEAREST_ROBOTS].tolist()
+    found: Indices = np.lexsort((turn, out.T.round(6)), axis=1)[:, :_NEAREST_ROBOTS]
     return found

@@ -27,7 +27,11 @@ def compiled(module: ModuleType) -> Any:
     """
     njit: Any = import_module("numba").njit
     names = dict(vars(module))
+    # References to arrays are not counted where none is made: it takes most of the time of many short calls.
+    makes_arrays = "np" in names
     for name, loop in vars(module).items():
         if isinstance(loop, FunctionType) and loop.__module__ == module.__name__:
-            names[name] = njit(cache=True)(FunctionType(loop.__code__, names, name, loop.__defaults__))
+            names[name] = njit(cache=True, _nrt=makes_arrays)(
+                FunctionType(loop.__code__, names, name, loop.__defaults__)
+            )
     return SimpleNamespace(**{name: names[name] for name in vars(module)})

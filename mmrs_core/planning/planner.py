@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
+from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
+from mmrs_core.planning.bounds import least_makespan
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
-from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
+from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import (
     TooNearError,
@@ -22,17 +26,25 @@ from mmrs_core.planning.team import Team
 from mmrs_core.scene import Plan, Scene
 
 
-def plan(scene: Scene, *, seed: int = 0) -> Plan:
+class _Find(Protocol):
+    """Returns the best decisions found for a team, with their schedule."""
+
+    def __call__(self, team: Team, *, in_turns: bool) -> tuple[Decisions, Schedule | Shortfall]: ...
+
+
+def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     """Return a plan in which the last robot is back as early as could be found.
 
     Every task is done exactly once, by robots that can do it, in the order of the dependencies; no
     sortie takes more than a charge less the reserve allows, waits included; every leg keeps its
-    clearance. The same scene and seed give the same plan. Where a task leaves open how many robots it
-    wants, numbers are tried too (see `robot_counts`): in a small mission no other number ends it sooner.
+    clearance. The same scene and seed give the same plan, unless a time or a stop ends the search. Where
+    a task leaves open how many robots it wants, numbers are tried too (see `robot_counts`): in a small
+    mission no other number ends it sooner.
 
     Args:
         scene: expanded: kinematics and works are known.
         seed: of the local search.
+        effort: that it may make; None: the steps that the mission's size asks for.
 
     Raises:
         InfeasibleError: no plan was found; its reasons give what is short, and by how much.
@@ -40,16 +52,25 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
     jobs = jobs_of(scene)
     team = Team(scene)
     _refuse([*team.shortfalls(), *_shared_choices(scene, jobs)], "no plan")
-    teams = _Remembered(_teams(team))
+    teams, effort = _Remembered(_teams(team)), effort or Effort()
+    effort.least = least_makespan(team, jobs)
+    find = partial(find_decisions, jobs=jobs, effort=effort)
+    best: Mapping[str, int] = {}
     found, refusal = None, InfeasibleError("no plan")
-    for wanted in ({}, *robot_counts(team, jobs)):
+    tries = ((wanted, partial(find, seed=seed)) for wanted in ({}, *robot_counts(team, jobs)))
+    longer = ((best, partial(find, seed=seed + 1, long=True)) for _ in range(effort.timed))
+    for wanted, search in chain(tries, longer):
+        if found is not None and effort.over:
+            break
         try:
-            found = _plan_asking(teams, wanted, jobs, seed, found)
+            made = _plan_asking(teams, wanted, jobs, search, found)
         except InfeasibleError as error:
             refusal = refusal if wanted else error
+            continue
+        found, best = made, best if made is found else wanted
     if found is None:
         raise refusal
-    return found
+    return replace(found, lower_bound=effort.least)
 
 
 def _cost(made: Plan) -> tuple[float, float]:
@@ -62,12 +83,12 @@ def _better(plan: Plan, best: Plan | None) -> Plan:
 
 
 def _plan_asking(
-    teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], seed: int, best: Plan | None
+    teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], find: _Find, best: Plan | None
 ) -> Plan:
     shortage = InfeasibleError("no plan")
     for each in teams:
         try:
-            return _plan_with(each.wanting(wanted) if wanted else each, jobs, seed, best)
+            return _plan_with(each.wanting(wanted) if wanted else each, jobs, find, best)
         except _ShortError as error:
             shortage = InfeasibleError(str(error), error.reasons)
     raise shortage
@@ -112,7 +133,7 @@ _DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
 
 
-def _plan_with(team: Team, jobs: Sequence[Job], seed: int, best: Plan | None) -> Plan:
+def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) -> Plan:
     """Return a plan of a team, or of one like it where robots that come too near are kept apart for less.
 
     It is the best so far if that is better.
@@ -120,7 +141,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], seed: int, best: Plan | None) ->
     Args:
         team: as it is.
         jobs: of the scene.
-        seed: of the local search.
+        find: returns decisions.
         best: the best so far.
 
     Raises:
@@ -128,7 +149,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], seed: int, best: Plan | None) ->
     """
     refusal: TooNearError | None = None
     try:
-        found, made = _plan_of(team, jobs, seed, best)
+        found, made = _plan_of(team, jobs, find, best)
         best = _better(made, best)
         if made.makespan <= _DEAR * found.makespan:
             return best
@@ -136,7 +157,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], seed: int, best: Plan | None) ->
         refusal = error
     for other, in_turns in _alternatives(team, refusal):
         try:
-            _, made = _plan_of(other, jobs, seed, best, in_turns=in_turns)
+            _, made = _plan_of(other, jobs, find, best, in_turns=in_turns)
         except _NotBetterError:
             break
         except InfeasibleError:
@@ -182,10 +203,10 @@ def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team
 
 
 def _plan_of(
-    team: Team, jobs: Sequence[Job], seed: int, best: Plan | None, *, in_turns: bool = False
+    team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None, *, in_turns: bool = False
 ) -> tuple[Plan, Plan]:
     """Return a plan as it was found, and as its robots keep apart; refuse one that is not better."""
-    decisions, found = find_decisions(team, jobs, seed, in_turns=in_turns)
+    decisions, found = find(team, in_turns=in_turns)
     if isinstance(found, Shortfall):
         reasons = _reasons(team, jobs, found)
         raise _ShortError(_words("no plan", reasons), reasons)

@@ -10,6 +10,7 @@ from random import Random
 from typing import TypeAlias
 
 from mmrs_core.planning.allocation import allocated
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.mixing import MIXES
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
@@ -34,7 +35,7 @@ _PATIENCE = 15
 
 
 def find_decisions(
-    team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False
+    team: Team, jobs: Sequence[Job], seed: int, effort: Effort, *, long: bool = False, in_turns: bool = False
 ) -> tuple[Decisions, Schedule | Shortfall]:
     """Return the best decisions found, with their schedule; a shortfall if none led to a schedule.
 
@@ -42,6 +43,8 @@ def find_decisions(
         team: of the scene.
         jobs: in an order in which none comes before one that it waits for.
         seed: of the search.
+        effort: that it may make.
+        long: whether it takes all of its time.
         in_turns: whether a robot leaves home only when all others are back there.
     """
     order = _first_order(team, jobs)
@@ -51,16 +54,17 @@ def find_decisions(
         *(Decisions(order, {job.name: (name,) for job in jobs}) for name in _only_ones(team, jobs)),
     ]
     starts = [replace(each, in_turns=in_turns) for each in starts]
-    tried = list(allocated(team, jobs, seed, in_turns=in_turns))
+    tried = list(allocated(team, jobs, seed, effort, long=long, in_turns=in_turns))
     if len(jobs) * len(team.pilots) <= _MOST_PAIRS or not any(
         isinstance(each, Schedule) for _, each in tried
     ):
         tried += [(each, schedule(team, jobs, each)) for each in starts]
     best, found = min(tried, key=lambda pair: cost_of(team, pair[1]))
+    effort.found(cost_of(team, found)[1] if isinstance(found, Schedule) else inf)
     random, idle = Random(seed), 0
     steps = min(_STEPS, max(4, _EFFORT // _size(team, jobs)))
     for step in range(_STEPS_TO_BEGIN if len(jobs) > 1 else 0):
-        if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= steps):
+        if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= steps or effort.over):
             break
         other = _varied(team, jobs, best, random)
         result = schedule(team, jobs, other)

@@ -163,6 +163,7 @@ class Plan:
         begins, ends: by task, seconds after the mission's start.
         notes: assumptions to show, such as flat terrain.
         left_out: what is not done of tasks, since it cannot be reached.
+        lower_bound: seconds that no plan's makespan falls below; 0: nothing is known.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -171,3 +172,4 @@ class Plan:
     ends: Mapping[str, float]
     notes: tuple[str, ...] = ()
     left_out: tuple[Omission, ...] = ()
+    lower_bound: float = 0.0

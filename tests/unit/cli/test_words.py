@@ -79,6 +79,20 @@ def test_a_plan_is_told_as_values_too(scene, plan):
     assert told["tasks"][1] == {"name": "fork", "begin": 31.0, "end": 31.0}
 
 
+@pytest.mark.parametrize(
+    ("least", "said"),
+    [
+        (71.0, "1:12 (within 2 % of the best possible)"),
+        (72.0, "1:12 (within 0 % of the best possible)"),
+        (30.0, "1:12"),
+        (0.0, "1:12"),
+    ],
+)
+def test_a_mission_time_is_compared_with_the_least_possible_one(scene, plan, least, said):
+    first = next(plan_lines(scene, replace(plan, makespan=72.0, lower_bound=least)))
+    assert first.endswith(f"mission time {said}")
+
+
 def test_long_cells_are_cut_but_for_the_last():
     row = "  xxxxxxxxx…  " + "y" * 50
     assert list(table(("a", "b"), [("x" * 50, "y" * 50)], widest=10)) == [f"  a{'b':>12}", row]

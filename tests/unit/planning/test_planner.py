@@ -14,9 +14,10 @@ from plain_scenes import (
     visit,
     with_kinematics,
 )
-from sound_plans import sound, steps_of
+from sound_plans import complaints, sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
 from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
@@ -97,6 +98,32 @@ def test_the_same_seed_gives_the_same_plan():
         TWO, {name: field_work(scene(TWO, {}), FIELD, altitude=up) for name, up in (("a", 20.0), ("b", 30.0))}
     )
     assert plan(whole, seed=4) == plan(whole, seed=4)
+
+
+def test_a_search_that_is_told_to_end_keeps_its_best_plan():
+    many = scene(TWO, {f"t{k}": visit((50.0 * (k % 5), 40.0 * k, 20.0)) for k in range(12)})
+    shown = []
+    effort = Effort(3600.0, show=lambda best, least: shown.append((best, least)) or effort.stop())
+    assert not effort.stop()
+    found = plan(many, effort=effort)
+    assert len(shown) == 1
+    assert shown[0][0] >= found.makespan >= found.lower_bound == shown[0][1] > 0.0
+    assert complaints(many, found) == []
+
+
+def test_a_longer_time_finds_a_plan_that_is_no_worse():
+    many = scene(TWO, {f"t{k}": visit((70.0 * (k * 7 % 12), 55.0 * (k * 5 % 12), 20.0)) for k in range(12)})
+    ticks = iter(range(10**6))
+    longer = plan(many, effort=Effort(400.0, lambda: float(next(ticks))))
+    assert next(ticks) >= 400
+    assert longer.makespan <= plan(many).makespan
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_plan_that_cannot_be_better_is_at_its_lower_bound(returns):
+    still = with_kinematics(robot(returns=returns), launch=0.0, recovery=0.0, launches=False)
+    found = plan(scene([still], {"a": visit((100.0, 0.0, 0.0), hold=3.0), "b": visit((300.0, 0.0, 0.0))}))
+    assert found.lower_bound == pytest.approx(found.makespan, abs=0.1)
 
 
 def test_a_task_waits_for_another_robots_share_of_the_one_before():

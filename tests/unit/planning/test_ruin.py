@@ -1,10 +1,15 @@
-from itertools import permutations, product
+from itertools import chain, permutations, product
 from math import dist, inf
 from random import Random
 
+import numpy as np
 import pytest
 
-from mmrs_core.planning.ruin import Field, Search
+from mmrs_core.planning import ruin
+from mmrs_core.planning.compilation import can_compile
+from mmrs_core.planning.effort import Effort
+from mmrs_core.planning.ruin import Search, stops_of
+from mmrs_core.planning.ruin_loops import Field
 
 
 def field(homes, stops, **features):
@@ -13,26 +18,29 @@ def field(homes, stops, **features):
     out = [dist(home, stop) for home in homes for stop in stops]
     near = [sorted(set(range(n)) - {i}, key=lambda j, i=i: dist(stops[i], stops[j])) for i in range(n)]
     plain = {
+        "sizes": [n, m, n - 1, m, 0],
         "kinds": [0] * m,
         "out": out,
         "go": [dist(one, two) for one in stops for two in stops],
         "back": out,
         "work": [0.0] * n,
-        "near": near,
-        "near_robots": [list(range(m))] * n,
-        "apart": [[]] * n,
+        "near": [*chain.from_iterable(near)],
+        "near_robots": [*range(m)] * n,
+        "apart": [],
         "limits": [inf] * m,
         "recharges": [0.0] * m,
         "earliest": [0.0] * n,
         "deadlines": [inf] * n,
         "ranks": [0] * n,
     }
-    return Field(**{**plain, **features})
+    whole = ("sizes", "kinds", "near", "near_robots", "apart", "ranks")
+    given = {**plain, **features}
+    return Field(**{k: np.array(v, np.int64 if k in whole else np.float64) for k, v in given.items()})
 
 
 def searched(given, steps=300, seed=0):
     search = Search(given, seed)
-    for _ in search.run(steps):
+    for _ in search.run(Effort().shares(steps)):
         pass
     return search.best
 
@@ -43,7 +51,7 @@ def places(count, seed):
 
 
 def orders(tours, robots):
-    return [list(tours.of(robot)) for robot in range(robots)]
+    return [list(stops_of(tours, robot)) for robot in range(robots)]
 
 
 def length(home, way):
@@ -79,6 +87,15 @@ def test_the_same_seed_gives_the_same_tours():
     assert orders(searched(given, seed=7), 3) == orders(searched(given, seed=7), 3)
 
 
+@pytest.mark.thorough
+@pytest.mark.skipif(not can_compile(), reason="numba is not installed")
+def test_compiled_steps_lead_to_the_same_tours(monkeypatch):
+    given = field(places(4, 1), places(40, 2))
+    plain = orders(searched(given), 4)
+    monkeypatch.setattr(ruin, "_MANY", 0)
+    assert orders(searched(given), 4) == plain
+
+
 def test_priority_does_not_rise_along_a_tour():
     ranks = [i % 3 for i in range(20)]
     tours = searched(field(places(3, 5), places(20, 6), ranks=ranks))
@@ -87,8 +104,8 @@ def test_priority_does_not_rise_along_a_tour():
 
 
 def test_stops_that_are_to_be_apart_have_different_robots():
-    apart = [[1, 2], [0, 2], [0, 1], *([[]] * 7)]
-    tours = searched(field(places(3, 7), places(10, 8), apart=apart))
+    apart = [1, 2, 0, 2, 0, 1, *([-1] * 14)]
+    tours = searched(field(places(3, 7), places(10, 8), sizes=[10, 3, 9, 3, 2], apart=apart))
     assert len({tours.robot[i] for i in range(3)}) == 3
 
 

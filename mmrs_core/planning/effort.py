@@ -1,0 +1,76 @@
+"""How long a planner searches for better plans: a number of steps, a time, or until it is told to stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import inf
+
+SLICE = 16
+"""Steps between two looks at the clock."""
+
+
+class Effort:
+    """What a search may spend, and how far it has come.
+
+    Without a time it is a number of steps for each search, so that the same seed gives the same plan.
+
+    Attributes:
+        timed: whether a time ends the search.
+        least: seconds that no plan's makespan falls below.
+        best: makespan of the best plan or tours so far, seconds; inf: none yet.
+        stopped: whether it was told to end.
+    """
+
+    def __init__(
+        self,
+        seconds: float | None = None,
+        clock: Callable[[], float] = lambda: 0.0,
+        show: Callable[[float, float], None] = lambda best, least: None,
+    ) -> None:
+        """Begin now.
+
+        Args:
+            seconds: after which the search ends; None: after its steps.
+            clock: returns seconds.
+            show: is given the best makespan so far and the least possible one, whenever one of them changes.
+        """
+        self.timed, self.least, self.best = seconds is not None, 0.0, inf
+        self._clock, self._show = clock, show
+        self._end = inf if seconds is None else clock() + seconds
+        self.stopped = False
+
+    def stop(self) -> bool:
+        """End the search; return whether it has something that can be kept."""
+        self.stopped = self.best < inf
+        return self.stopped
+
+    @property
+    def over(self) -> bool:
+        """Whether the search is to end with what it has."""
+        return self.stopped or (self.timed and self._clock() >= self._end)
+
+    def found(self, makespan: float) -> None:
+        """Take note of a makespan that was found."""
+        if makespan < self.best - 0.05:
+            self.best = makespan
+            self._show(self.best, self.least)
+
+    def shares(self, steps: int, *, of_the_rest: float = 0.0) -> Iterator[float]:
+        """Yield, before each slice of steps, which share of a search is done.
+
+        Args:
+            steps: of the search.
+            of_the_rest: share of the time left that it may take instead; 0: it ends with its steps.
+        """
+        if of_the_rest and self.timed:
+            begin = self._clock()
+            whole = of_the_rest * (self._end - begin)
+            while (
+                not self.stopped and (share := (self._clock() - begin) / whole if whole > 0.0 else 1.0) < 1.0
+            ):
+                yield share
+            return
+        for step in range(0, steps, SLICE):
+            if self.over:
+                return
+            yield step / steps
