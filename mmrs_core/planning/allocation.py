@@ -109,9 +109,7 @@ def _stops(team: Team, jobs: Sequence[Job]) -> Iterator[_Stop]:
 
 
 def _seconds(team: Team, task: str) -> float:
-    materials = (
-        team.forwards(task, robot) for robot in dict.fromkeys(team.kinds[robot] for robot in team.able(task))
-    )
+    materials = (team.forwards(task, robot) for robot in team.able_kinds(task).values())
     return max((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
 
 
@@ -144,14 +142,21 @@ class _Fields:
         out, back = np.full((2, len(self._pilots), len(self._stops)), inf)
         go = np.full((len(self._kinds), len(self._stops), len(self._stops)), inf)
         work = np.zeros((len(self._kinds), len(self._stops)))
+        able_kinds = [self._team.able_kinds(stop.job) for stop in self._stops]
         for k, kind in enumerate(self._kinds):
-            materials = [self._part(stop, kind) for stop in self._stops]
+            materials = [
+                self._part(stop, each.get(kind)) for stop, each in zip(self._stops, able_kinds, strict=True)
+            ]
             able = [i for i, each in enumerate(materials) if each is not None]
             robots = [r for r, each in enumerate(kinds) if each == k]
             legs = _Legs([self._pilots[r] for r in robots], [each for each in materials if each is not None])
             work[k, able] = legs.work
             go[k][np.ix_(able, able)] = legs.between()
             out[np.ix_(robots, able)], back[np.ix_(robots, able)] = legs.home()
+        for i, stop in enumerate(self._stops):
+            if len(self._team.able(stop.job)) < len(kinds):
+                unable = set(self._team.pilots) - set(self._team.able(stop.job))
+                out[[r for r, name in enumerate(self._team.pilots) if name in unable], i] = inf
         near, near_robots = _nearest(go.min(axis=0)), _nearest_robots(out)
         others = [self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)]
         most = max(map(len, others))
@@ -178,9 +183,9 @@ class _Fields:
         first = index - stop.part
         return [i for i in range(first, first + stop.parts) if i != index]
 
-    def _part(self, stop: _Stop, robot: str) -> Material | None:
+    def _part(self, stop: _Stop, robot: str | None) -> Material | None:
         """Return the material of a stop, part of a job's, for a robot; None if it cannot do the job."""
-        whole = self._team.forwards(stop.job, robot)
+        whole = None if robot is None else self._team.forwards(stop.job, robot)
         if whole is None or len(whole) < stop.parts or stop.parts == 1:
             return whole
         begin, end = (len(whole) * i // stop.parts for i in (stop.part, stop.part + 1))
@@ -209,6 +214,8 @@ class _Legs:
     def between(self) -> Matrix:
         """Return (stops, stops) the seconds from the end of one to the begin of another."""
         found = self._straight(_places(self._ends), _places(self._begins), self._speeds)
+        if self._pilots[0].travel.straight:
+            return found
         for i, row in enumerate(np.argsort(found, axis=1, kind="stable")[:, :_ROUTED].tolist()):
             for j in row:
                 found[i, j] = self._routed(self._pilots[0], self._ends[i], j)
@@ -226,6 +233,8 @@ class _Legs:
             homes, begins, ends = (each * (1.0, 1.0, 0.0) for each in (homes, begins, ends))
         out = self._straight(homes, begins, self._speeds) + up
         back = self._straight(ends, homes, [None] * len(homes)).T + down
+        if self._pilots[0].travel.straight:
+            return out, back
         near = np.argsort(out, axis=0, kind="stable")[:_ROUTED].T
         for stop, robots in enumerate(near.tolist()):
             for robot in robots:

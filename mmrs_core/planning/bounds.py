@@ -98,11 +98,8 @@ def _earliest_ends(
 
 
 def _works(team: Team, task: str) -> dict[str, Work]:
-    """Return the works of a task by the first of all robots that do it alike."""
-    return {
-        name: team.scene.works[task, name]
-        for name in dict.fromkeys(map(team.kinds.__getitem__, team.able(task)))
-    }
+    """Return the works of a task by one of all robots that do it alike."""
+    return {name: team.scene.works[task, name] for name in team.able_kinds(task).values()}
 
 
 def _shared(team: Team, task: str) -> Work | None:

@@ -57,7 +57,9 @@ class Space:
         self.floor, self.ceiling = floor, ceiling
         self.rates = rates or Rates(1.0, 1.0, 1.0)
         self._least = 2.0 * turning_radius
-        self._obstacles = Obstacles(tuple(areas), clearance)
+        kept_from = tuple(areas)
+        self.empty = not kept_from
+        self._obstacles = Obstacles(kept_from, clearance)
         self._visibility = Visibility(self._obstacles)
         self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
 

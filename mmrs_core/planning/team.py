@@ -51,7 +51,7 @@ class Team:
             footprints or different clearances make.
         mixtures: by name of task: the sorts that can share it, where there are several.
         refusals: by (task, robot): why the robot cannot do the task.
-        kinds: by robot: the first that does every work as it does.
+        kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
         done: what has become of jobs in earlier schedules; see `schedule`.
     """
@@ -173,6 +173,8 @@ class Team:
 
     def forwards(self, task: str, robot: str) -> Material | None:
         """Return the material of a task for a robot; None if it cannot do the task."""
+        if (task, robot) in self.refusals:
+            return None
         return self._materials.get((task, self.kinds[robot], False))
 
     def backwards(self, task: str, robot: str) -> Material | None:
@@ -194,6 +196,10 @@ class Team:
     def able(self, task: str) -> tuple[str, ...]:
         """Return all robots that can do a task, in the scene's order."""
         return self._able_robots[task]
+
+    def able_kinds(self, task: str) -> dict[str, str]:
+        """Return, by kind, the first robot that can do a task."""
+        return {self.kinds[name]: name for name in reversed(self.able(task))}
 
     def sharers(self, task: str) -> int:
         """Return how many robots may share a task at most; 1 where it is indivisible."""
@@ -267,14 +273,19 @@ class Team:
 
 
 def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:
-    """Return, by robot, the first that does every work as it does: what is laid out once serves both."""
+    """Return, by robot, the first that does alike what both can do: what is laid out once serves both."""
     tasks = [task.name for task in scene.tasks]
-    first: dict[tuple[object, ...], str] = {}
+    known: dict[tuple[object, ...], list[tuple[str, dict[str, int]]]] = {}
     kinds = {}
     for name, pilot in pilots.items():
-        works = tuple(id(scene.works.get((task, name))) for task in tasks)
-        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works)
-        kinds[name] = first.setdefault(key, name)
+        mine = {task: id(work) for task in tasks if (work := scene.works.get((task, name))) is not None}
+        alike = known.setdefault((id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space)), [])
+        fits = (each for each in alike if all(each[1].get(task, work) == work for task, work in mine.items()))
+        first, works = next(fits, (name, mine))
+        if first == name:
+            alike.append((name, mine))
+        works |= mine
+        kinds[name] = first
     return kinds
 
 

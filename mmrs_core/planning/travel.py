@@ -105,10 +105,16 @@ class Travel:
         self._returning: dict[Position, Route | str] = {}
         self._between: dict[tuple[Position, Position], Route | str] = {}
         self._hops: dict[tuple[Position, Position], Route] = {}
+        self._soonest: dict[float, Rates] = {}
 
     def _within(self, height: float) -> float:
         lowest = max(self.kinematics.floor, self.robot.home[2])
         return max(lowest, min(height, self.kinematics.ceiling))
+
+    @property
+    def straight(self) -> bool:
+        """Return whether all its routes are straight: nothing is in the way, and no altitude is wanted."""
+        return self.space.empty and self._altitude is None
 
     def leave(self, goal: Position) -> Route:
         """Return the route from home to a place.
@@ -181,7 +187,9 @@ class Travel:
         return Route(route, self.space.seconds(route), length_of(route), lead=lead)
 
     def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
-        soonest = rates.soonest()
+        if rates.cruise not in self._soonest:
+            self._soonest[rates.cruise] = rates.soonest()
+        soonest = self._soonest[rates.cruise]
         quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop
         return sum(rates.from_stop_to_stop(*leg) - quickest(*leg) for leg in pairwise(route))
 

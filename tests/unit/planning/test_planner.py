@@ -20,11 +20,13 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
+from mmrs_core.planning.team import Team
 from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
 from mmrs_runtime.timing import LegTiming
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
 FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))
+PLACES = ((100.0, 0.0, 20.0), (0.0, 100.0, 20.0))
 CUTS = tuple(range(50, 1000, 50))
 
 
@@ -121,9 +123,27 @@ def test_a_longer_time_finds_a_plan_that_is_no_worse():
 
 @pytest.mark.parametrize("returns", [True, False])
 def test_a_plan_that_cannot_be_better_is_at_its_lower_bound(returns):
-    still = with_kinematics(robot(returns=returns), launch=0.0, recovery=0.0, launches=False)
-    found = plan(scene([still], {"a": visit((100.0, 0.0, 0.0), hold=3.0), "b": visit((300.0, 0.0, 0.0))}))
-    assert found.lower_bound == pytest.approx(found.makespan, abs=0.1)
+    still = with_kinematics(robot(returns=returns), launch=0.0, recovery=0.0, floor=0.0, launches=False)
+    found = plan(scene([still], {"a": visit((300.0, 0.0, 0.0), hold=3.0)}))
+    assert found.lower_bound == pytest.approx(found.makespan) == (63.0 if returns else 33.0)
+
+
+def test_robots_that_can_do_different_tasks_are_of_one_kind():
+    works = {name: {"r1": one, "r2": one} for name, one in zip("ab", map(visit, PLACES), strict=True)}
+    del works["a"]["r2"], works["b"]["r1"]
+    team = Team(scene(TWO, works))
+    assert set(team.kinds.values()) == {"r1"}
+    assert [[team.forwards(task, name) is None for name in team.pilots] for task in "ab"] == [
+        [False, True],
+        [True, False],
+    ]
+    found = sound(scene(TWO, works))
+    assert {
+        each.robot: [step.task for step in steps_of(found, each.robot, Serve)] for each in found.robots
+    } == {
+        "r1": ["a"],
+        "r2": ["b"],
+    }
 
 
 def test_a_task_waits_for_another_robots_share_of_the_one_before():
