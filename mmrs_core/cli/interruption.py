@@ -52,7 +52,7 @@ def interruptible(work: Callable[[], int]) -> int:
 
 @contextmanager
 def ended_by_interrupt(stop: Callable[[], bool]) -> Iterator[None]:
-    """Have the first interrupt call a function; it interrupts if that returns false, as do all others."""
+    """Let the first interrupt call a function; it interrupts if that returns false, as do all others."""
     if signal.getsignal(signal.SIGINT) is not _interrupt:
         yield
         return

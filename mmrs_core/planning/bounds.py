@@ -84,7 +84,7 @@ def _aloft_and_down(team: Team, pilots: Sequence[Pilot], tasks: Sequence[str]) -
 def _earliest_ends(
     team: Team, jobs: Sequence[Job], there: Mapping[str, float], work: Mapping[str, float]
 ) -> dict[str, float]:
-    """Return, by job, when it ends at the earliest, whoever does it and those before it."""
+    """Return, by job, when it ends at the earliest, by whatever robots."""
     ends = dict[str, float]()
     for job in jobs:
         before = max((ends[name] for name in job.after), default=0.0)
@@ -119,7 +119,7 @@ def _work(team: Team, task: str) -> float:
 
 
 def _places(team: Team, task: str) -> Places:
-    """Return what must be visited for a task: each of its strokes; all of it where that is laid out anew."""
+    """Return what must be visited for a task: each stroke; all of it where robots lay it out differently."""
     work = _shared(team, task)
     strokes = joined(work.strokes) if work is not None else ()
     groups = [each.points for each in strokes] or [

@@ -1,4 +1,4 @@
-"""How long a planner searches for better plans: a number of steps, a time, or until it is told to stop."""
+"""How long a planner searches for better plans: a number of steps, a time, or until it is stopped."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Effort:
         timed: whether a time ends the search.
         least: seconds that no plan's makespan falls below.
         best: makespan of the best plan or tours so far, seconds; inf: none yet.
-        stopped: whether it was told to end.
+        stopped: whether it was ended before.
     """
 
     def __init__(

@@ -102,7 +102,7 @@ def test_the_same_seed_gives_the_same_plan():
     assert plan(whole, seed=4) == plan(whole, seed=4)
 
 
-def test_a_search_that_is_told_to_end_keeps_its_best_plan():
+def test_a_search_that_is_stopped_keeps_its_best_plan():
     many = scene(TWO, {f"t{k}": visit((50.0 * (k % 5), 40.0 * k, 20.0)) for k in range(12)})
     shown = []
     effort = Effort(3600.0, show=lambda best, least: shown.append((best, least)) or effort.stop())
