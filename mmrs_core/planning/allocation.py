@@ -25,7 +25,7 @@ from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Position
-from mmrs_core.scene.timing import Rates
+from mmrs_core.scene.timing import LEVEL, Rates
 
 _NEAREST = 10
 """Other stops next to which a stop may be inserted."""
@@ -34,6 +34,9 @@ _NEAREST_ROBOTS = 8
 
 _ROUTED = 12
 """Nearest stops to and from which routes are found; to and from others, straight ones are estimated."""
+
+_ROWS = 64
+"""Stops whose seconds to all others are found at once: all at once would take too much room."""
 
 _FEWEST = 6
 """Jobs below which the search among schedules tries most of what there is."""
@@ -46,6 +49,7 @@ _PIECES_PER_TOUR = 3
 """Pieces of a mean tour into which work that robots may share is cut."""
 
 Matrix = NDArray[np.float64]
+Singles = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
 
@@ -101,9 +105,10 @@ def _stops(team: Team, jobs: Sequence[Job]) -> Iterator[_Stop]:
     piece = sum(seconds.values()) / (_PIECES_PER_TOUR * len(team.pilots))
     for name in single:
         most = team.sharers(name)
-        wanted = team.scene.task(name).wanted
+        wanted = team.tasks[name].wanted
         parts = wanted or max(1, min(most, ceil(seconds[name] / piece - 0.5) if piece > 0.0 else 1))
-        laid_out = [each for robot in team.able(name) if (each := team.forwards(name, robot)) is not None]
+        kinds = team.able_kinds(name).values()
+        laid_out = [each for robot in kinds if (each := team.forwards(name, robot)) is not None]
         parts = min(parts, max(map(len, laid_out), default=0))
         yield from (_Stop(name, i, parts) for i in range(parts))
 
@@ -137,27 +142,30 @@ class _Fields:
 
     def field(self) -> Field:
         """Return the field of all stops."""
-        tasks = [self._team.scene.task(stop.job) for stop in self._stops]
+        tasks = [self._team.tasks[stop.job] for stop in self._stops]
         kinds = [self._kinds.index(self._team.kinds[name]) for name in self._team.pilots]
         out, back = np.full((2, len(self._pilots), len(self._stops)), inf)
-        go = np.full((len(self._kinds), len(self._stops), len(self._stops)), inf)
+        go = np.full((len(self._kinds), len(self._stops), len(self._stops)), inf, np.float32)
         work = np.zeros((len(self._kinds), len(self._stops)))
         able_kinds = [self._team.able_kinds(stop.job) for stop in self._stops]
         for k, kind in enumerate(self._kinds):
             materials = [
                 self._part(stop, each.get(kind)) for stop, each in zip(self._stops, able_kinds, strict=True)
             ]
-            able = [i for i, each in enumerate(materials) if each is not None]
-            robots = [r for r, each in enumerate(kinds) if each == k]
-            legs = _Legs([self._pilots[r] for r in robots], [each for each in materials if each is not None])
+            able = np.array([i for i, each in enumerate(materials) if each is not None], np.int64)
+            robots = np.array([r for r, each in enumerate(kinds) if each == k], np.int64)
+            legs = _Legs(
+                [self._pilots[r] for r in robots.tolist()], [each for each in materials if each is not None]
+            )
             work[k, able] = legs.work
-            go[k][np.ix_(able, able)] = legs.between()
+            for i, row in zip(able.tolist(), legs.between(), strict=True):
+                go[k, i, able] = row
             out[np.ix_(robots, able)], back[np.ix_(robots, able)] = legs.home()
         for i, stop in enumerate(self._stops):
             if len(self._team.able(stop.job)) < len(kinds):
                 unable = set(self._team.pilots) - set(self._team.able(stop.job))
                 out[[r for r, name in enumerate(self._team.pilots) if name in unable], i] = inf
-        near, near_robots = _nearest(go.min(axis=0)), _nearest_robots(out)
+        near, near_robots = _nearest(go), _nearest_robots(out)
         others = [self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)]
         most = max(map(len, others))
         apart = np.array([[*each, *([-1] * (most - len(each)))] for each in others], np.int64)
@@ -211,15 +219,17 @@ class _Legs:
             for material, approach in zip(materials, approaches, strict=True)
         ]
 
-    def between(self) -> Matrix:
-        """Return (stops, stops) the seconds from the end of one to the begin of another."""
-        found = self._straight(_places(self._ends), _places(self._begins), self._speeds)
-        if self._pilots[0].travel.straight:
-            return found
-        for i, row in enumerate(np.argsort(found, axis=1, kind="stable")[:, :_ROUTED].tolist()):
-            for j in row:
-                found[i, j] = self._routed(self._pilots[0], self._ends[i], j)
-        return found
+    def between(self) -> Iterator[Matrix]:
+        """Yield, by stop, the seconds from its end to the begin of each."""
+        begins, travel = _places(self._begins), self._pilots[0].travel
+        for first in range(0, len(begins), _ROWS):
+            ends = self._ends[first : first + _ROWS]
+            rows = self._straight(_places(ends), begins, self._speeds)
+            for end, row in zip(ends, rows, strict=True):
+                if not travel.straight:
+                    for j in np.argsort(row, kind="stable")[:_ROUTED].tolist():
+                        row[j] = self._routed(self._pilots[0], end, j)
+                yield row
 
     def home(self) -> tuple[Matrix, Matrix]:
         """Return (robots, stops) the seconds from homes to stops, and from stops until robots are back."""
@@ -275,18 +285,22 @@ def _leg_seconds(rates: Rates, level: Matrix, rise: Matrix) -> Matrix:
     """Return the seconds of legs so long and so high, from a stop to a stop if level."""
     lengths = np.concatenate([[0.0], np.geomspace(0.1, max(1.0, float(level.max(initial=1.0))), 200)])
     seconds = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (each, 0.0, 0.0)) for each in lengths.tolist()]
-    heights, which = np.unique(rise, return_inverse=True)
-    upright = np.array([rates.upright(each) for each in heights.tolist()])
-    found: Matrix = np.maximum(np.interp(level, lengths, seconds), upright[which].reshape(rise.shape))
+    up, down = (rates.upright(sign * 1.0) for sign in (1.0, -1.0))
+    with np.errstate(invalid="ignore"):  # no height takes no time, even where none can be gained
+        upright = np.where(np.abs(rise) <= LEVEL, 0.0, np.abs(rise) * np.where(rise > 0.0, up, down))
+    found: Matrix = np.maximum(np.interp(level, lengths, seconds), upright)
     return found
 
 
-def _nearest(go: Matrix) -> Indices:
+def _nearest(go: Singles) -> Indices:
     """Return, by stop, the others from which robots come there soonest, or to which they do."""
-    both = np.minimum(go, go.T)
-    np.fill_diagonal(both, inf)
-    count = min(_NEAREST, len(go) - 1)
-    found: Indices = np.argsort(both, axis=1, kind="stable")[:, :count]
+    count = min(_NEAREST, go.shape[1] - 1)
+    found: Indices = np.zeros((go.shape[1], count), np.int64)
+    for i in range(len(found)):
+        both = np.minimum(go[:, i], go[:, :, i]).min(axis=0)
+        both[i] = inf
+        nearest = np.argpartition(both, count - 1)[:count] if count else found[i]
+        found[i] = nearest[np.lexsort((nearest, both[nearest]))]
     return found
 
 

@@ -147,11 +147,11 @@ def why_idle(team: Team, robot: str) -> str:
 
 
 def _reason(team: Team, task: str, robot: str) -> str:
-    if robot not in team.able(task):
+    if team.forwards(task, robot) is None:
         return team.refusals.get((task, robot), "it cannot do the task")
     if team.sharers(task) == 1 and len(team.able(task)) > 1 and team.whole(task):
         return "one robot must do all of it, and the mission ends no later with another one"
-    wanted = team.scene.task(task).wanted
+    wanted = team.tasks[task].wanted
     others = [name for name in team.able(task) if name not in team.sharing_with(task, robot)]
     apart = (
         f"; it cannot share it with {', '.join(others)}, whose work is laid out otherwise" if others else ""

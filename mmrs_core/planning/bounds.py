@@ -13,6 +13,7 @@ is anywhere at once.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import inf
@@ -25,7 +26,10 @@ from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import commanded_speed, joined, serve_seconds
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Work
+from mmrs_core.scene import Work, distinct_works
+
+_CREWS = 8
+"""Sets of robots that are looked at one by one, with the tasks that no others can do."""
 
 _MOST = 1000
 """Places up to which distances between them are exact; beyond, those of the rectangles around them."""
@@ -55,7 +59,8 @@ def least_makespan(team: Team, jobs: Sequence[Job]) -> float:
     there = {task: float(seconds(each).min()) for task, each in away.items()}
     ends = _earliest_ends(team, jobs, there, work)
     least = [once + ends[task] + (there[task] if returns else 0.0) for task in tasks]
-    for crew in {frozenset(team.able(task)) for task in tasks} | {frozenset(names)}:
+    crews = Counter(map(team.able, tasks)).most_common(_CREWS)
+    for crew in {frozenset(each) for each, _ in crews} | {frozenset(names)}:
         mine = [task for task in tasks if crew.issuperset(team.able(task))]
         tree = _spanned(*(np.concatenate([each[task] for task in mine]) for each in (places, away)))
         together = float(seconds(tree).sum()) + sum(work[task] for task in mine)
@@ -89,7 +94,7 @@ def _earliest_ends(
     for job in jobs:
         before = max((ends[name] for name in job.after), default=0.0)
         if job.name in there:
-            task = team.scene.task(job.name)
+            task = team.tasks[job.name]
             begin = max(before, there[job.name], task.earliest or 0.0)
             ends[job.name] = begin + work[job.name] / max(1, task.wanted or team.sharers(job.name))
         else:
@@ -153,7 +158,7 @@ def _quickest(team: Team, names: Sequence[str], longest: float) -> Callable[[Arr
     short = max(0.05, *(kinematics.accepts for kinematics in kinds))
     lengths = np.concatenate([[0.0], np.geomspace(2.0 * short, max(4.0 * short, longest), 200)])
     least = np.full(len(lengths), inf)
-    strokes = [stroke for work in team.scene.works.values() for stroke in work.strokes]
+    strokes = [stroke for work in distinct_works(team.scene.works) for stroke in work.strokes]
     for kinematics in kinds:
         speed = max(commanded_speed(each, kinematics) for each in strokes)
         timing = replace(kinematics.timing, overshoot=0.0, lag=0.0)

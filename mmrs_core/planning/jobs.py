@@ -6,9 +6,10 @@ and the task where its arms meet again, which is one robot's work.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
+from heapq import heapify, heappop, heappush
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Dependency, Scene, Task
@@ -71,9 +72,12 @@ def jobs_of(scene: Scene) -> tuple[Job, ...]:
     """
     graph = _Graph(scene)
     owner = graph.owners()
+    members: dict[str, list[str]] = {}
+    for name, job in owner.items():
+        members.setdefault(job, []).append(name)
     jobs = [
-        Job(name, graph.choices.get(name), tuple(sorted(graph.before(name, owner))))
-        for name in dict.fromkeys(owner.values())
+        Job(name, graph.choices.get(name), tuple(sorted(graph.before(name, mine, owner))))
+        for name, mine in members.items()
     ]
     return _sorted(jobs)
 
@@ -87,13 +91,14 @@ def _sorted(jobs: list[Job]) -> tuple[Job, ...]:
     except CycleError as error:
         raise _in_a_circle(error) from error
     order: list[Job] = []
-    ready = list(sorter.get_ready())
+    ready = [(place[name], name) for name in sorter.get_ready()]
+    heapify(ready)
     while ready:
-        ready.sort(key=lambda name: place[name])
-        first = ready.pop(0)
+        _, first = heappop(ready)
         order.append(by_name[first])
         sorter.done(first)
-        ready.extend(sorter.get_ready())
+        for name in sorter.get_ready():
+            heappush(ready, (place[name], name))
     return tuple(order)
 
 
@@ -205,10 +210,10 @@ class _Graph:
             if name in member_of or name in self.choices or name not in self.control
         }
 
-    def before(self, job: str, owner: dict[str, str]) -> set[str]:
-        """Return the jobs that must have ended before a job begins."""
+    def before(self, job: str, mine: Sequence[str], owner: Mapping[str, str]) -> set[str]:
+        """Return the jobs that must have ended before a job, of which some tasks are members, begins."""
         found: set[str] = set()
-        pending = [edge.before for name, mine in owner.items() if mine == job for edge in self.into[name]]
+        pending = [edge.before for name in mine for edge in self.into[name]]
         seen: set[str] = set()
         while pending:
             name = pending.pop()

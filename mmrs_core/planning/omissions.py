@@ -23,14 +23,13 @@ def omissions_of(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[O
     Where robots of different sorts share a task, that is what the one leaves out that leaves out least:
     its sort does all that others have not done.
     """
-    served = {(task, robot) for robot, taken in steps.items() for task in _served(taken)}
+    served = dict[str, list[str]]()
+    for robot_name, taken in steps.items():
+        for name in dict.fromkeys(_served(taken)):
+            served.setdefault(name, []).append(robot_name)
     found = list[Omission]()
     for task in scene.tasks:
-        works = [
-            (robot, scene.works[task.name, robot.name])
-            for robot in scene.robots
-            if (task.name, robot.name) in served
-        ]
+        works = [(scene.robot(each), scene.works[task.name, each]) for each in served.get(task.name, ())]
         if works:
             robot, work = min(works, key=lambda each: amount_left_out(each[1]))
             found += _of(scene, task.name, robot, work)

@@ -287,7 +287,7 @@ def _reasons(team: Team, jobs: Sequence[Job], found: Shortfall) -> list[str]:
 def _general(team: Team, job: Job) -> str:
     if job.choice is not None:
         return f"fork '{job.name}': no robot can do all of its branches (they are one robot's work)"
-    task = team.scene.task(job.name)
+    task = team.tasks[job.name]
     whole = min(
         each.seconds(0, len(each) - 1)
         for robot in team.able(task.name)

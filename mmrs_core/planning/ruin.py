@@ -25,7 +25,7 @@ from mmrs_core.planning.ruin_loops import Field, Room, Tours
 _HOT, _COLD = 0.2, 0.002
 """Temperature at the beginning and at the end, as a share of the mean tour."""
 
-_MANY = 100
+_MANY = 50
 """Stops from which it is worth to compile the steps."""
 
 _DENSE = 2_000

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Wholes: TypeAlias = MutableSequence[int] | NDArray[numpy.int64]
-    Reals: TypeAlias = MutableSequence[float] | NDArray[numpy.float64]
+    Reals: TypeAlias = MutableSequence[float] | NDArray[numpy.float64] | NDArray[numpy.float32]
 
 _STRING = 10
 """Stops at most that are removed from one tour in a row."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import inf
@@ -140,7 +140,11 @@ class _Scheduling:
         States stand for themselves in the key: a new one is another one.
         """
         turns = self._decisions.in_turns
-        concerned = self._team.pilots if turns or job.choice is not None else self._team.able(job.name)
+        concerned: Iterable[str] = self._allowed(job)
+        if turns or (job.choice is not None and concerned is self._team.pilots):
+            concerned = self._team.pilots
+        elif concerned is self._team.pilots:
+            concerned = self._team.able(job.name)
         states = tuple(self._states[name] for name in concerned)
         before = tuple((*self._ends[name].items(), *self._soonest[name].items()) for name in job.after)
         wanted = tuple(self._tasks[name].wanted for name in job.tasks())
@@ -239,10 +243,10 @@ class _Scheduling:
     def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[ShareCandidate]:
         """Return the allowed robots of a group, those first that are first back from the first portion."""
         allowed = self._allowed(job)
+        if allowed is not self._team.pilots:
+            group = sorted((name for name in allowed if name in group), key=group.index)
         found = []
         for name in group:
-            if name not in allowed:
-                continue
             forwards = self._team.forwards(job.name, name)
             if forwards is None:
                 continue

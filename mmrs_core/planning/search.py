@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import islice, product
 from math import inf, prod
 from random import Random
 from typing import TypeAlias
@@ -103,7 +103,8 @@ def _only_ones(team: Team, jobs: Sequence[Job]) -> list[str]:
     wanted = {task.name: task.wanted for task in team.scene.tasks}
     if any((wanted[task] or 1) > 1 for task in tasks):
         return []
-    return [name for name in team.pilots if all(name in team.able(task) for task in tasks)][:1]
+    crews = {team.able(task) for task in tasks}
+    return list(islice((name for name in team.pilots if all(name in crew for crew in crews)), 1))
 
 
 def cost_of(team: Team, found: Schedule | Shortfall) -> Cost:
@@ -144,7 +145,7 @@ def _first_order(team: Team, jobs: Sequence[Job]) -> tuple[str, ...]:
     priority = {task.name: task.priority for task in team.scene.tasks}
     ranked = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
     names = [job.name for job in jobs]
-    return tuple(sorted(names, key=lambda name: (-ranked[name], -tails[name], names.index(name))))
+    return tuple(sorted(names, key=lambda name: (-ranked[name], -tails[name])))
 
 
 def _tails(team: Team, jobs: Sequence[Job]) -> Mapping[str, float]:
@@ -179,7 +180,7 @@ def _varied(team: Team, jobs: Sequence[Job], decisions: Decisions, random: Rando
     if random.random() < 0.3 and job.name in groups:
         del groups[job.name]
     else:
-        wanted = None if job.choice is not None else team.scene.task(job.name).wanted
+        wanted = None if job.choice is not None else team.tasks[job.name].wanted
         size = wanted or min(len(able), random.choice((1, 1, 2, 2, 3, random.randint(1, len(able)))))
         groups[job.name] = tuple(sorted(random.sample(able, min(size, len(able)))))
     return replace(decisions, groups=groups)
@@ -237,7 +238,5 @@ def _uniform_counts(most: Mapping[str, int]) -> list[Mapping[str, int]]:
 
 def _open_tasks(team: Team, jobs: Sequence[Job]) -> list[str]:
     return [
-        job.name
-        for job in jobs
-        if job.choice is None and job.tasks() and team.scene.task(job.name).wanted is None
+        job.name for job in jobs if job.choice is None and job.tasks() and team.tasks[job.name].wanted is None
     ]

@@ -32,6 +32,7 @@ from mmrs_core.scene import (
     Signal,
     Step,
     Transit,
+    distinct_works,
 )
 
 _ROUNDING = 1e-3
@@ -392,7 +393,7 @@ def stacked_altitudes(scene: Scene) -> dict[str, float]:
     least = distance_to_keep(scene) or 0.0
     robots = [robot for robot in scene.robots if robot.kinematics is not None and robot.kinematics.launches]
     heights = [
-        point[2] for work in scene.works.values() for stroke in work.strokes for point in stroke.points
+        point[2] for work in distinct_works(scene.works) for stroke in work.strokes for point in stroke.points
     ]
     if least <= 0.0 or len(robots) < 2 or not heights:
         return {}

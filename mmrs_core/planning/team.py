@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from functools import partial
@@ -25,7 +25,7 @@ from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
 from mmrs_core.planning.turns import JobResult
-from mmrs_core.scene import Robot, Scene, Task, Work
+from mmrs_core.scene import Robot, Scene, SharedWorks, Task, Work
 
 _PORTIONS_PER_ROBOT = 60
 """Portions of a robot's part of the whole mission that are small enough to balance it."""
@@ -51,6 +51,7 @@ class Team:
             footprints or different clearances make.
         mixtures: by name of task: the sorts that can share it, where there are several.
         refusals: by (task, robot): why the robot cannot do the task.
+        tasks: by name.
         kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
         done: what has become of jobs in earlier schedules; see `schedule`.
@@ -90,8 +91,9 @@ class Team:
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
-        self._faults: dict[tuple[str, str], str] = {}
-        self._able_robots: dict[str, tuple[str, ...]] = {}
+        self.tasks = {task.name: task for task in scene.tasks}
+        self._crews: dict[tuple[str, ...], tuple[tuple[str, ...], dict[str, str]]] = {}
+        self._able_robots: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {}
         self._layouts: dict[tuple[str, str], Layout] = {}
         self._materials: dict[tuple[str, str, Direction], Material | None] = {}
         self.groups: dict[str, tuple[tuple[str, ...], ...]] = {}
@@ -111,37 +113,44 @@ class Team:
                 divide = partial(self._layout, robots=robots)
                 mixtures.append(Mixture(task.name, able, self.pilots, self.kinds, divide))
         self.groups[task.name], self.mixtures[task.name] = tuple(groups), tuple(mixtures)
+        found = groups[0] if len(groups) == 1 else self._in_order(groups)
+        if found not in self._crews:
+            self._crews[found] = found, {self.kinds[name]: name for name in reversed(found)}
+        self._able_robots[task.name] = self._crews[found]
+        if len(groups) == 1:
+            self.groups[task.name] = self._crews[found][:1]
+
+    def _in_order(self, groups: Iterable[Sequence[str]]) -> tuple[str, ...]:
         found = {name for group in groups for name in group}
-        self._able_robots[task.name] = tuple(name for name in self.pilots if name in found)
+        return tuple(name for name in self.pilots if name in found)
 
     def _sorts(self, task: Task) -> list[tuple[Work, list[str]]]:
-        """Return the robots whose work of a task is sound, by work."""
+        """Return the robots whose work of a task is sound, by work; keep why others cannot do it."""
+        works, name = self.scene.works, task.name
+        if isinstance(works, SharedWorks):
+            able: Sequence[str] = works.able(name)
+        else:
+            able = [robot for robot in self.pilots if (name, robot) in works]
+        if len(able) < len(self.pilots):
+            for robot in self.pilots.keys() - set(able):
+                self.refusals.setdefault((name, robot), "has no work for it")
         sorts: list[tuple[Work, list[str]]] = []
-        for name, pilot in self.pilots.items():
-            work = self._sound_work(task, pilot)
-            if work is None:
-                continue
-            group = next((group for other, group in sorts if other is work or other == work), None)
-            if group is None:
-                sorts.append((work, [name]))
+        alike: dict[str, tuple[list[str], str]] = {}
+        for robot in able:
+            kind = self.kinds[robot]
+            if kind not in alike:
+                work, pilot = works[name, robot], self.pilots[robot]
+                fault, group = "; ".join(faults(work, pilot)), list[str]()
+                known = next((group for other, group in sorts if other is work or other == work), group)
+                if not fault and known is group:
+                    sorts.append((work, group))
+                alike[kind] = known, fault
+            group, fault = alike[kind]
+            if fault:
+                self.refusals[name, robot] = fault
             else:
-                group.append(name)
+                group.append(robot)
         return sorts
-
-    def _sound_work(self, task: Task, pilot: Pilot) -> Work | None:
-        """Return the robot's work of a task; None, with the reason kept, if it cannot do it."""
-        key = (task.name, pilot.robot.name)
-        work = self.scene.works.get(key)
-        if work is None:
-            self.refusals.setdefault(key, "has no work for it")
-            return None
-        alike = (task.name, self.kinds[pilot.robot.name])
-        if alike not in self._faults:
-            self._faults[alike] = "; ".join(faults(work, pilot))
-        if self._faults[alike]:
-            self.refusals[key] = self._faults[alike]
-            return None
-        return work
 
     def _layout(self, work: Work, group: Sequence[str], robots: int) -> Layout:
         return layout_of(work, self.pilots[group[0]], robots, coarsest=self._coarsest, fine=self.fine)
@@ -168,7 +177,10 @@ class Team:
         """Return the same team, materials and all, where tasks want so many robots."""
         tasks = [replace(task, wanted=wanted.get(task.name, task.wanted)) for task in self.scene.tasks]
         other = copy(self)
-        other.scene = replace(self.scene, tasks=tuple(tasks))
+        other.scene, other.tasks = (
+            replace(self.scene, tasks=tuple(tasks)),
+            {each.name: each for each in tasks},
+        )
         return other
 
     def forwards(self, task: str, robot: str) -> Material | None:
@@ -195,11 +207,11 @@ class Team:
 
     def able(self, task: str) -> tuple[str, ...]:
         """Return all robots that can do a task, in the scene's order."""
-        return self._able_robots[task]
+        return self._able_robots[task][0]
 
-    def able_kinds(self, task: str) -> dict[str, str]:
+    def able_kinds(self, task: str) -> Mapping[str, str]:
         """Return, by kind, the first robot that can do a task."""
-        return {self.kinds[name]: name for name in reversed(self.able(task))}
+        return self._able_robots[task][1]
 
     def sharers(self, task: str) -> int:
         """Return how many robots may share a task at most; 1 where it is indivisible."""
@@ -207,16 +219,13 @@ class Team:
 
     def circles(self, task: str) -> list[tuple[str, ...]]:
         """Return the robots that can share a task with each other, each in one circle."""
-        mixed = [
-            tuple(name for each in mixture.sorts for name in each.robots) for mixture in self.mixtures[task]
-        ]
+        mixed = [self._in_order(each.robots for each in mixture.sorts) for mixture in self.mixtures[task]]
         inside = {name for names in mixed for name in names}
-        found = [*mixed, *(group for group in self.groups[task] if group and group[0] not in inside)]
-        return [tuple(name for name in self.pilots if name in circle) for circle in found]
+        return [*mixed, *(group for group in self.groups[task] if group and group[0] not in inside)]
 
     def whole(self, task: str) -> bool:
         """Return whether one robot must do all of a task."""
-        materials = [self.forwards(task, name) for name in self.able(task)]
+        materials = [self.forwards(task, name) for name in self.able_kinds(task).values()]
         return any(each is not None and each.whole for each in materials)
 
     def sharing_with(self, task: str, robot: str) -> tuple[str, ...]:
@@ -274,18 +283,16 @@ class Team:
 
 def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:
     """Return, by robot, the first that does alike what both can do: what is laid out once serves both."""
-    tasks = [task.name for task in scene.tasks]
-    known: dict[tuple[object, ...], list[tuple[str, dict[str, int]]]] = {}
+    tasks, shared = [task.name for task in scene.tasks], scene.works
+    first: dict[tuple[object, ...], str] = {}
     kinds = {}
     for name, pilot in pilots.items():
-        mine = {task: id(work) for task in tasks if (work := scene.works.get((task, name))) is not None}
-        alike = known.setdefault((id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space)), [])
-        fits = (each for each in alike if all(each[1].get(task, work) == work for task, work in mine.items()))
-        first, works = next(fits, (name, mine))
-        if first == name:
-            alike.append((name, mine))
-        works |= mine
-        kinds[name] = first
+        if isinstance(shared, SharedWorks):
+            works: object = shared.sorts[name]
+        else:
+            works = tuple(id(shared.get((task, name))) for task in tasks)
+        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works)
+        kinds[name] = first.setdefault(key, name)
     return kinds
 
 
@@ -324,9 +331,11 @@ def _response_to_low_battery(scene: Scene, robot: Robot) -> str:
 def _seconds_of_all(scene: Scene) -> float:
     """Return roughly how long all works take one robot: each task's length at some robot's cruise."""
     cruises = {robot.name: kinematics_of(robot).cruise for robot in scene.robots}
-    by_task: dict[str, float] = {}
-    for (task, robot), work in scene.works.items():
-        metres = sum(length_of(stroke.points) for stroke in work.strokes)
-        if task not in by_task and cruises[robot] > 0:
-            by_task[task] = metres / cruises[robot]
-    return sum(by_task.values())
+    total = 0.0
+    for task in scene.tasks:
+        robot = next((name for name in cruises if (task.name, name) in scene.works), None)
+        if robot is not None and cruises[robot] > 0.0:
+            total += (
+                sum(length_of(each.points) for each in scene.works[task.name, robot].strokes) / cruises[robot]
+            )
+    return total

@@ -30,7 +30,18 @@ from mmrs_core.scene.robots import (
     Robot,
     RobotType,
 )
-from mmrs_core.scene.works import DISTANCE, ActionAt, Coverage, Gap, Look, Repetition, Stroke, Work
+from mmrs_core.scene.works import (
+    DISTANCE,
+    ActionAt,
+    Coverage,
+    Gap,
+    Look,
+    Repetition,
+    SharedWorks,
+    Stroke,
+    Work,
+    distinct_works,
+)
 from mmrs_runtime.policies import Policy, PolicyEvent, PolicyResponse
 
 if TYPE_CHECKING:
@@ -87,6 +98,7 @@ __all__ = [
     "RobotType",
     "Scene",
     "Serve",
+    "SharedWorks",
     "Signal",
     "Step",
     "Stroke",
@@ -95,6 +107,7 @@ __all__ = [
     "TravelMode",
     "Value",
     "Work",
+    "distinct_works",
 ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, dist
@@ -181,3 +182,53 @@ class Work:
     entry: Position | None = None
     coverage: Coverage | None = None
     gaps: tuple[Gap, ...] = ()
+
+
+class SharedWorks(Mapping[tuple[str, str], Work]):
+    """Works by (task name, robot name); robots of one sort share theirs, so that pairs take no room.
+
+    Attributes:
+        sorts: by robot: number of its sort.
+    """
+
+    def __init__(self, sorts: Mapping[str, int]) -> None:
+        """Begin without works."""
+        self.sorts = sorts
+        self._everyone = tuple(sorts)
+        self._works: dict[str, tuple[Sequence[Work | None], Collection[str]]] = {}
+
+    def add(self, task: str, works: Sequence[Work | None], without: Collection[str]) -> None:
+        """Add the works of a task, by sort of robot; some robots cannot do it all the same."""
+        self._works[task] = (works, without)
+
+    def able(self, task: str) -> tuple[str, ...]:
+        """Return the robots that have work for a task, in the order of the sorts' robots."""
+        works, without = self._works.get(task, ((), ()))
+        if all(works) and works and not without:
+            return self._everyone
+        return tuple(robot for robot in self._everyone if (task, robot) in self)
+
+    def __getitem__(self, pair: tuple[str, str]) -> Work:
+        """Return the work of a robot for a task."""
+        works, without = self._works[pair[0]]
+        work = works[self.sorts[pair[1]]]
+        if work is None or pair[1] in without:
+            raise KeyError(pair)
+        return work
+
+    def __iter__(self) -> Iterator[tuple[str, str]]:
+        """Yield the pairs that have work."""
+        return ((task, robot) for task in self._works for robot in self.able(task))
+
+    def __len__(self) -> int:
+        """Return how many pairs have work."""
+        return sum(len(self.able(task)) for task in self._works)
+
+    def distinct(self) -> Iterator[Work]:
+        """Yield each work of a task and a sort of robots once."""
+        return (work for works, _ in self._works.values() for work in works if work is not None)
+
+
+def distinct_works(works: Mapping[tuple[str, str], Work]) -> Iterable[Work]:
+    """Return all works, each at least once, and seldom more often."""
+    return works.distinct() if isinstance(works, SharedWorks) else works.values()

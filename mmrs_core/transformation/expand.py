@@ -16,7 +16,19 @@ from mmrs_core.contributions.rules import (
     robot_kind_of,
 )
 from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
-from mmrs_core.scene import Device, Kinematics, Name, Part, Robot, Scene, Stroke, Task, Value, Work
+from mmrs_core.scene import (
+    Device,
+    Kinematics,
+    Name,
+    Part,
+    Robot,
+    Scene,
+    SharedWorks,
+    Stroke,
+    Task,
+    Value,
+    Work,
+)
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
@@ -37,7 +49,13 @@ def expand(
     types = {robot.type.name: robot.type for robot in robots}
     barred = barriers(scene.elements, scene.areas, types.values(), robot_kinds, element_kinds)
     scene = replace(scene, robots=robots, areas=(*scene.areas, *barred))
-    works: dict[tuple[str, str], Work] = {}
+    numbers = dict[tuple[str, float, Kinematics | None], int]()
+    works = SharedWorks(
+        {
+            robot.name: numbers.setdefault((robot.type.name, robot.clearance, robot.kinematics), len(numbers))
+            for robot in robots
+        }
+    )
     refusals: dict[tuple[str, str], str] = {}
     for task in scene.tasks:
         if not task.part.is_a(CONTROL_TASK):
@@ -66,25 +84,26 @@ def _expand_task(
     task: Task,
     scene: Scene,
     rules: Mapping[Name, Rule],
-    works: dict[tuple[str, str], Work],
+    works: SharedWorks,
     refusals: dict[tuple[str, str], str],
 ) -> None:
     name = most_specific(task.part.metaclasses, rules)
     if name is None:
         what = task.part.metaclasses[0][1] if task.part.metaclasses else "unknown type"
         raise InfeasibleError(f"task '{task.name}': no installed plug-in has a rule for a {what}")
-    alike: dict[tuple[str, float, Kinematics | None], Work | str] = {}
+    alike: dict[int, Work | str] = {}
+    without = set[str]()
     for robot in scene.robots:
-        key = (robot.type.name, robot.clearance, robot.kinematics)
-        if key not in alike:
-            alike[key] = _work(task, robot, scene, rules[name])
-        found = alike[key]
-        if isinstance(found, Work):
-            found = out_of_reach(found, robot) or found
-        if isinstance(found, str):
-            refusals[task.name, robot.name] = found
-        else:
-            works[task.name, robot.name] = found
+        sort = works.sorts[robot.name]
+        if sort not in alike:
+            alike[sort] = _work(task, robot, scene, rules[name])
+        found = alike[sort]
+        refusal = found if isinstance(found, str) else out_of_reach(found, robot)
+        if refusal:
+            refusals[task.name, robot.name] = refusal
+            without.add(robot.name)
+    by_sort = [each if isinstance(each, Work) else None for _, each in sorted(alike.items())]
+    works.add(task.name, by_sort, without)
 
 
 def _work(task: Task, robot: Robot, scene: Scene, rule: Rule) -> Work | str:
@@ -132,6 +151,8 @@ def unfit(robot: Robot, scene: Scene) -> str | None:
 def out_of_reach(work: Work, robot: Robot) -> str | None:
     """Return why the radio does not reach all of a work from the robot's home; None if it does."""
     reach = _number(robot.type.part.attributes.get("communicationRange"), inf)
+    if reach == inf:
+        return None
     places = (point for stroke in work.strokes for point in stroke.points)
     farthest = max((dist(place, robot.home) for place in places), default=0.0)
     if farthest <= reach:

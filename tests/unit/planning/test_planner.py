@@ -21,7 +21,7 @@ from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
+from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, SharedWorks, Signal, Transit
 from mmrs_runtime.timing import LegTiming
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
@@ -128,22 +128,19 @@ def test_a_plan_that_cannot_be_better_is_at_its_lower_bound(returns):
     assert found.lower_bound == pytest.approx(found.makespan) == (63.0 if returns else 33.0)
 
 
-def test_robots_that_can_do_different_tasks_are_of_one_kind():
-    works = {name: {"r1": one, "r2": one} for name, one in zip("ab", map(visit, PLACES), strict=True)}
-    del works["a"]["r2"], works["b"]["r1"]
-    team = Team(scene(TWO, works))
-    assert set(team.kinds.values()) == {"r1"}
-    assert [[team.forwards(task, name) is None for name in team.pilots] for task in "ab"] == [
-        [False, True],
-        [True, False],
-    ]
-    found = sound(scene(TWO, works))
-    assert {
-        each.robot: [step.task for step in steps_of(found, each.robot, Serve)] for each in found.robots
-    } == {
-        "r1": ["a"],
-        "r2": ["b"],
-    }
+def test_robots_of_one_sort_that_can_do_different_tasks_share_what_is_laid_out():
+    one, two = map(visit, PLACES)
+    works = SharedWorks({"r1": 0, "r2": 0})
+    works.add("a", (one,), {"r2"})
+    works.add("b", (two,), {"r1"})
+    works.add("c", (one,), ())
+    assert works == {("a", "r1"): one, ("b", "r2"): two, ("c", "r1"): one, ("c", "r2"): one}
+    whole = replace(scene(TWO, {"a": one, "b": two, "c": one}), works=works)
+    team = Team(whole)
+    assert [team.able(task) for task in "abc"] == [("r1",), ("r2",), ("r1", "r2")]
+    assert team.forwards("b", "r1") is None
+    assert team.forwards("c", "r1") is team.forwards("c", "r2")
+    assert [step.task for step in steps_of(sound(whole), "r2", Serve)] == ["b"]
 
 
 def test_a_task_waits_for_another_robots_share_of_the_one_before():
