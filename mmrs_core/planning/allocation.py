@@ -42,7 +42,7 @@ _FEWEST = 6
 """Jobs below which the search among schedules tries most of what there is."""
 
 _STEPS_PER_STOP = 40
-_MOST_STEPS = 4000
+_MOST_STEPS = 10_000
 _ROUNDS = 2
 
 _PIECES_PER_TOUR = 3
