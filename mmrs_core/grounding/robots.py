@@ -89,6 +89,8 @@ _LEG_FIGURES = {
     "cornerRadius": "corner_radius",
     "settlingTime": "settling",
     "overshoot": "overshoot",
+    "lag": "lag",
+    "lagTime": "lag_within",
     "spread": "spread",
 }
 """Attributes of `LegTiming`, by feature."""

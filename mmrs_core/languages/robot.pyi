@@ -283,6 +283,10 @@ class LegTiming(Element):
     """Time from the end of a leg until it is reported as done, in seconds."""
     overshoot: float | None
     """How far the robot goes beyond a target, in metres for each metre per second of the leg's largest speed: a time, in seconds."""
+    lag: float | None
+    """How much longer a long level leg takes, as the robot builds up the thrust against its drag only with time, in seconds."""
+    lagTime: float | None
+    """Time constant with which that thrust grows, in seconds."""
     spread: float | None
     """Share by which legs take longer or shorter than expected, 0 to 1; checks count with both."""
     def __init__(
@@ -299,6 +303,8 @@ class LegTiming(Element):
         cornerRadius: float | None = ...,
         settlingTime: float | None = ...,
         overshoot: float | None = ...,
+        lag: float | None = ...,
+        lagTime: float | None = ...,
         spread: float | None = ...,
     ) -> None: ...
 

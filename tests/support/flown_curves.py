@@ -15,13 +15,18 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """How legs are flown: speed, acceleration, deceleration, jerk, and seconds at each target."""
+    """How legs are flown: speed, acceleration, deceleration, jerk, and seconds at each target.
+
+    Speeding up leads to a speed that lacks a share, which then falls with a time constant.
+    """
 
     speed: float = 8.0
     acceleration: float = 2.5
     deceleration: float = 1.5
     jerk: float = 5.0
     pause: float = 0.6
+    lacks: float = 0.0
+    gaining: float = 1.0
 
 
 def ramp(change: float, acceleration: float, jerk: float, step: float) -> np.ndarray:
@@ -45,8 +50,14 @@ def profile(length: float, curve: Curve, step: float) -> np.ndarray:
         ramp(low, curve.acceleration, curve.jerk, step),
         ramp(low, curve.deceleration, curve.jerk, step),
     )
-    even = max(0, round((length - (up.sum() + down.sum()) * step) / (low * step)))
-    return np.concatenate([up, np.full(even, low), down[::-1]])
+    lacks = curve.lacks * np.exp(-len(up) * step / curve.gaining)
+    up = ramp(low * (1.0 - lacks), curve.acceleration, curve.jerk, step) if lacks else up
+    rest = length - (up.sum() + down.sum()) * step
+    times = step * (len(up) + np.arange(2 * max(0, round(rest / (low * step))) + 2))
+    even = low * (1.0 - curve.lacks * np.exp(-times / curve.gaining))
+    gone = np.concatenate([[0.0], np.cumsum(even) * step])
+    count = int(np.argmin(abs(gone - max(0.0, rest))))
+    return np.concatenate([up, even[:count], down[::-1]])
 
 
 def flown(

@@ -194,7 +194,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "RL033",
-        "Speeds, accelerations and jerk of a leg timing are more than 0.",
+        "Speeds, accelerations, jerk and time constants of a leg timing are more than 0.",
         (ROBOT, "LegTiming"),
         _positive(
             "maxSpeed",
@@ -204,14 +204,15 @@ CONSTRAINTS = (
             "maxJerk",
             "maxClimbRate",
             "maxDescentRate",
+            "lagTime",
         ),
         "leave out what is not known",
     ),
     Constraint(
         "RL034",
-        "The corner radius, the settling time and the overshoot of a leg timing are not negative.",
+        "The corner radius, the settling time, the overshoot and the lag of a leg timing are not negative.",
         (ROBOT, "LegTiming"),
-        _at_least_zero("cornerRadius", "settlingTime", "overshoot"),
+        _at_least_zero("cornerRadius", "settlingTime", "overshoot", "lag"),
         "leave out what is not known",
     ),
     Constraint(

@@ -19,6 +19,8 @@ TIMING = (
     "cornerRadius",
     "settlingTime",
     "overshoot",
+    "lag",
+    "lagTime",
 )
 """Attributes of its timing of legs, for each way of flying them."""
 

@@ -8,7 +8,7 @@ from math import degrees, inf, isfinite
 
 import numpy as np
 
-from mmrs_core.scene.timing import Rates
+from mmrs_core.scene.timing import STANDING, Rates
 from mmrs_runtime.timing import LegTiming
 
 from ..profiles import VehicleProfile
@@ -18,9 +18,11 @@ from .curves import FEWEST, LARGEST_JERK, Ramp, plateaus_in, ramps_in, with_jerk
 from .flight import Flags, Flight, Floats
 from .motion import (
     EVEN_SECONDS,
+    Gain,
     Leg,
     climbs_of,
     corners_passed,
+    gain_of,
     landings_of,
     legs_of,
     level_speeds,
@@ -40,6 +42,9 @@ CHARGED = 0.02
 """Rise of the charge from which on a battery was charged; less is noise."""
 
 _USUAL_STILL = 0.3
+
+CLEAR = 0.5
+"""Share of a leg's thrust that the leg before may have left, or against it, for the lag to be judged."""
 
 COULOMBS = 3.6
 """In a milliampere-hour."""
@@ -161,11 +166,18 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
         yield figure("cornerRadius", "m", passed, "no corner was passed without a stop")
     overshoot: float | None = None
     settled = list[float]()
+    straight = list(legs_of(flight, level.ramps, still))
+    gains = _gains(flight, straight)
     if speeding and jerks and tops:
         a, d, j = (float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
         usual = _usual(flight.profile, flown_as)
-        timing = LegTiming(acceleration=a, deceleration=d, jerk=j, lag=usual.lag, lag_within=usual.lag_within)
-        legs = [each for each in legs_of(flight, level.ramps, still) if isfinite(each.done - each.begun)]
+        timing = LegTiming(acceleration=a, deceleration=d, jerk=j)
+        legs = [each for each in straight if isfinite(each.done - each.begun)]
+        lag, within = usual.lag, usual.lag_within
+        if gains:
+            lag = float(np.median([each.lag for each in gains]))
+            within = float(np.median([each.seconds for each in gains]))
+        timing = replace(timing, lag=lag, lag_within=within)
         overshoot, settled = _beside(legs, timing, max(tops))
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
     unclear = "the legs do not show it: fly short and long ones" if settled else missing
@@ -173,10 +185,13 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
         missing = unclear = "no acceleration and speed to judge legs by"
     yield figure("overshoot", "s", () if overshoot is None else (overshoot,), unclear)
     yield figure("settlingTime", "s", settled, missing)
+    even = "no speed was kept for long that the vehicle came near to only with time"
+    yield figure("lag", "s", (each.lag for each in gains), even)
+    yield figure("lagTime", "s", (each.seconds for each in gains), even)
 
 
 def _usual(profile: VehicleProfile | None, flown_as: str) -> LegTiming:
-    """Return how a vehicle's autopilot takes legs, whose lag no type states."""
+    """Return how a vehicle's autopilot takes legs, whose lag counts where the legs do not show it."""
     pacing = UNKNOWN if profile is None else profile.pacing
     return pacing.mission if flown_as == MISSION and pacing.mission is not None else pacing.step
 
@@ -204,24 +219,44 @@ def _beside(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> tuple[flo
         timing: acceleration, deceleration and jerk.
         fastest: speed that was kept.
     """
+
+    def going(hundredths: int) -> LegTiming:
+        return replace(timing, overshoot=hundredths / 100.0)
+
     tops = [each.speeding_up.high for each in legs]
-    plain = [_left(each, timing, fastest) for each in legs]
+    plain = _lefts(legs, timing, fastest)
     if len(legs) < FEWEST or max(tops) < 1.5 * min(tops):
         return None, plain
-    best = min(range(1, 31), key=lambda number: _width(_lefts(legs, timing, fastest, number / 100.0)))
-    left = _lefts(legs, timing, fastest, best / 100.0)
+    best = min(range(1, 31), key=lambda number: _width(_lefts(legs, going(number), fastest)))
+    left = _lefts(legs, going(best), fastest)
     return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (None, plain)
 
 
-def _lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float, overshoot: float) -> list[float]:
-    return [_left(each, replace(timing, overshoot=overshoot), fastest) for each in legs]
+def _gains(flight: Flight, legs: Sequence[Leg]) -> list[Gain]:
+    """Return how fast the vehicle came near to its speed on legs, each as if it had begun without thrust."""
+    found, push = list[Gain](), STANDING
+    for leg in legs:
+        if (gain := gain_of(flight, leg)) is None:
+            push = STANDING
+            continue
+        rates = Rates(gain.speed, 1.0, 1.0, LegTiming(lag=gain.lag, lag_within=gain.seconds))
+        left = sum(one * two for one, two in zip(push, leg.way, strict=True)) / leg.length
+        if abs(left) < CLEAR:
+            found.append(replace(gain, lag=gain.lag / (1.0 - left)))
+        push = rates.push((0.0, 0.0, 0.0), (*leg.way, 0.0), push) or STANDING
+    return found
 
 
-def _left(leg: Leg, timing: LegTiming, fastest: float) -> float:
-    """Return by how much a leg took longer than it is planned to."""
-    cruise = leg.cruise if isfinite(leg.cruise) else fastest
-    rates = Rates(cruise, climb=cruise, descent=cruise, timing=timing)
-    return leg.done - leg.begun - rates.from_stop_to_stop((0.0, 0.0, 0.0), (leg.length, 0.0, 0.0))
+def _lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> list[float]:
+    """Return by how much legs took longer than they are planned to, in their order."""
+    found, push = list[float](), STANDING
+    for leg in legs:
+        cruise = leg.cruise if isfinite(leg.cruise) and not timing.lag else fastest
+        rates = Rates(cruise, climb=cruise, descent=cruise, timing=timing)
+        here, there = (0.0, 0.0, 0.0), (*leg.way, 0.0)
+        found.append(leg.done - leg.begun - rates.from_stop_to_stop(here, there, push=push))
+        push = rates.push(here, there, push) or STANDING
+    return found
 
 
 def _width(values: Sequence[float]) -> float:

@@ -27,6 +27,16 @@ _UPRIGHT = 0.5
 _LONGEST_PAUSE = 3.0
 """Seconds between a stop and the next target, above which the vehicle had something else to do there."""
 
+_GAINING_SAMPLES = 60
+"""Samples of even speed from which it is judged whether a vehicle came near to its speed only with time."""
+
+_SLOWLY = 4.0
+"""Seconds of the time constant from which it counts: gusts and corners make shorter ones."""
+
+_LEAST_LACK, _UNEVEN, _BEYOND = 0.15, 0.02, 1.15
+"""Share of its speed that it lacks at first, from which that counts; root mean square of what the curve
+leaves over, and the speed that it leads to, as shares of the speed, up to which it is believed."""
+
 _CLIMBING = 0.2
 """Metres per second from which a vehicle climbs or descends."""
 
@@ -37,7 +47,7 @@ class Leg:
 
     Attributes:
         speeding_up, slowing_down: how it begins and ends.
-        length: metres.
+        way: east and north, metres.
         cruise: mean speed between, where one was kept; NaN: none was.
         begun: when the vehicle was given its target; NaN where the log does not tell.
         done: when it was given the next one, or its next mode; NaN likewise.
@@ -45,10 +55,15 @@ class Leg:
 
     speeding_up: Ramp
     slowing_down: Ramp
-    length: float
+    way: tuple[float, float]
     cruise: float
     begun: float
     done: float
+
+    @property
+    def length(self) -> float:
+        """Return its length, metres."""
+        return hypot(*self.way)
 
 
 def level_speeds(flight: Flight) -> Floats:
@@ -69,15 +84,60 @@ def legs_of(flight: Flight, ramps: Sequence[Ramp], still: float) -> Iterator[Leg
         if not before.rising or after.rising or max(before.low, after.low) > still:
             continue
         along = flight.places[before.first : after.last + 1, :2]
-        length = float(np.hypot(*(along[-1] - along[0])))
-        if length < STRAIGHT * float(np.hypot(*np.diff(along, axis=0).T).sum()):
+        east, north = (along[-1] - along[0]).tolist()
+        if hypot(east, north) < STRAIGHT * float(np.hypot(*np.diff(along, axis=0).T).sum()):
             continue
         stands = np.flatnonzero(speeds[after.first :] <= still)
         stood = float(flight.times[after.first + stands[0]]) if len(stands) else float(flight.times[-1])
         even = float(flight.times[after.first] - flight.times[before.last]) >= EVEN_SECONDS
         cruise = float(speeds[before.last : after.first + 1].mean()) if even else nan
         began = float(flight.times[before.first])
-        yield Leg(before, after, length, cruise, *_bounds(flight, before.middle, began, stood))
+        yield Leg(before, after, (east, north), cruise, *_bounds(flight, before.middle, began, stood))
+
+
+@dataclass(frozen=True, slots=True)
+class Gain:
+    """How a vehicle came near to its speed on a leg, as it built up the thrust for it.
+
+    Attributes:
+        speed: that it would have reached, metres per second.
+        lag: seconds that it takes longer for that. seconds: time constant.
+    """
+
+    speed: float
+    lag: float
+    seconds: float
+
+
+def gain_of(flight: Flight, leg: Leg) -> Gain | None:
+    """Return how the vehicle came near to its speed; None: at once, or the leg is too short to tell.
+
+    After its first, quick change the speed lacks what falls as e^(-t / T): that curve is fitted.
+    """
+    first, last = leg.speeding_up.last, leg.slowing_down.first
+    speeds = level_speeds(flight)[first : last + 1]
+    if len(speeds) < _GAINING_SAMPLES:
+        return None
+    lowest = int(np.argmin(speeds[: len(speeds) * 2 // 5]))
+    speeds = speeds[lowest:]
+    times = flight.times[first + lowest : last + 1]
+    times = times - float(flight.times[leg.speeding_up.first])
+    fits = []
+    for seconds in np.geomspace(2.0, max(2.5, (times[-1] - times[0]) / 1.5), 40).tolist():
+        curve = np.stack([np.ones_like(times), -np.exp(-times / seconds)], axis=1)
+        (speed, lacks), *_ = np.linalg.lstsq(curve, speeds, rcond=None)
+        error = float(np.sqrt(((curve @ (speed, lacks) - speeds) ** 2).mean()))
+        fits.append((error, float(speed), float(lacks), seconds))
+    error, speed, lacks, seconds = min(fits)
+    clear = error < _UNEVEN * speed and float(np.ptp(speeds)) > 4.0 * error
+    if (
+        seconds < _SLOWLY
+        or not clear
+        or not _LEAST_LACK < lacks / speed < 1.0
+        or speed > _BEYOND * float(speeds.max())
+    ):
+        return None
+    return Gain(speed, seconds * lacks / speed, seconds)
 
 
 def _bounds(flight: Flight, moving: float, began: float, stood: float) -> tuple[float, float]:

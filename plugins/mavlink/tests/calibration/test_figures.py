@@ -60,6 +60,16 @@ def test_the_lag_of_an_autopilot_is_not_settling(tmp_path):
     assert settled[1] < settled[0] - 2.0
 
 
+def test_a_vehicle_that_comes_near_to_its_speed_only_with_time_lags(tmp_path):
+    submarine = Curve(speed=1.35, acceleration=1.0, deceleration=1.0, jerk=1.0, lacks=0.4, gaining=17.0)
+    around = [(0.0, 0.0, -5.0), (90.0, 0.0, -5.0), (90.0, 80.0, -5.0), (0.0, 80.0, -5.0)]
+    found = figures(tmp_path, dataflash(flown(around, submarine, noise=0.01)))
+    assert found["STEP", "lag"].median == pytest.approx(0.4 * 17.0, rel=0.15)
+    assert found["STEP", "lagTime"].median == pytest.approx(17.0, rel=0.15)
+    at_once = figures(tmp_path, dataflash(flown(around, replace(submarine, lacks=0.0), noise=0.01)))
+    assert at_once["STEP", "lag"].values == ()
+
+
 def test_upright_legs_tell_climb_and_descent(tmp_path):
     curve = Curve(speed=2.5, acceleration=1.0, deceleration=1.0)
     found = figures(tmp_path, dataflash(flown(UP_AND_DOWN, curve)))
