@@ -160,9 +160,9 @@ _PX4_STEP = LegTiming(
     descent=1.5,
     corner_radius=0.0,
     acceptance=1.0,
-    settling=4.4,
+    settling=5.0,
     overshoot=0.31,
-    spread=0.51,
+    spread=0.45,
     reporting=10.0,
 )
 
