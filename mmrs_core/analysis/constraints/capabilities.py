@@ -108,8 +108,8 @@ def _nobody(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _too_many(task: Element, models: ModelSet) -> Iterator[Finding]:
-    wanted, count = number(task, "robotsWanted"), len(able(task, models))
-    if wanted is not None and 0 < count < wanted:
+    wanted = number(task, "robotsWanted")
+    if wanted is not None and 0 < (count := len(able(task, models))) < wanted:
         yield finding(task, f"wants {wanted:g} robots, but only {count} of the team can do it")
 
 
@@ -120,10 +120,13 @@ def _shared_point(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _too_deep(task: Element, models: ModelSet) -> Iterator[Finding]:
-    depth, team = _depth(task, models), able(task, models)
-    limits = [_deepest(robot.type, models) for robot in team if robot.type is not None]
+    depth = _depth(task, models)
+    if depth is None:
+        return
+    types = {robot.type for robot in able(task, models) if robot.type is not None}
+    limits = [_deepest(each, models) for each in types]
     known = [limit for limit in limits if limit is not None]
-    if depth is not None and known and len(known) == len(limits) and depth > max(known):
+    if known and len(known) == len(limits) and depth > max(known):
         yield finding(
             task, f"is {depth:g} m below the surface, but no robot of the team works below {max(known):.4g} m"
         )
