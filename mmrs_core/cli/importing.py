@@ -246,11 +246,11 @@ def _row_of_all(outcomes: Sequence[Outcome]) -> tuple[str, str, str, str]:
 
 def _pattern(outcomes: Sequence[Outcome]) -> str:
     """Return what --as calls some features of one folder."""
-    from mmrs_core.projects.choosing import quoted
+    from mmrs_core.projects.choosing import pattern_of, quoted
 
     first = outcomes[0]
     one = all(each.name == first.name for each in outcomes)
-    return quoted(first.name) if one else quoted("", first.folders)
+    return pattern_of(first) if one else quoted("", first.folders)
 
 
 def _summary(outcomes: Sequence[Outcome]) -> str:

@@ -115,7 +115,7 @@ class Beginning:
         known = self.task_types()
         if task.type in known or "." in task.type:
             kind = self._kinds.named(task.type)
-            if kind.feature == "tasks":
+            if kind.feature == "tasks" and kind.shapes:
                 return kind
         if any(task.type == name for _, name in self._contributions.rules):
             words = "refers to elements of the context, which have to be drawn first: write it in the model"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -13,13 +13,13 @@ import numpy as np
 from mmrs_core.diagnostics import Place
 from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature, Role
 from mmrs_core.grounding.features import child, children
-from mmrs_core.languages.element import Element, label_of, metaclass_of
+from mmrs_core.languages.element import Element, descendants, is_kind, label_of, metaclass_of
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.naming import unreadable
-from mmrs_core.projects.attributes import asked_values, decided, drawn_values, missing, set_values
+from mmrs_core.projects.attributes import asked_values, decided, drawn_values, missing, named_in, set_values
 from mmrs_core.projects.choosing import Decision, quoted, shape_of
 from mmrs_core.projects.heights import Levels
-from mmrs_core.projects.kinds import MISSION, Kind
+from mmrs_core.projects.kinds import MISSION, Kind, refers
 from mmrs_core.projects.likeness import DrawnElements, differences
 from mmrs_core.projects.shapes import DECIMALS, DrawnShape, Floats, UnfitError, around, begin_of, shape
 
@@ -112,6 +112,7 @@ class Builder:
         self.comments: dict[Element, str] = {}
         self.added: dict[str, list[Element]] = {}
         self.tasks: dict[str, Element] = {}
+        self._called: dict[str, str] = {}
         self._roots = {"tasks": mission}
         self._context = context
         self._registry = registry
@@ -135,6 +136,8 @@ class Builder:
         )
         if kind.metaclass is None:
             return replace(told, reason=decision.reason)
+        if not kind.shapes:
+            return self._refer(feature, decision, told)
         attributes = dict(decision.attributes)
         try:
             found = self._shape(feature, kind, attributes)
@@ -142,7 +145,7 @@ class Builder:
             self.refuse_open(kind, feature.place, repr(feature.name[:LONGEST_NAME]), str(unfit), feature.name)
             return replace(told, reason=str(unfit))
         element = self._registry.create(*kind.metaclass.key)
-        given, doubts = drawn_values(feature, kind, kind.metaclass)
+        given, doubts = drawn_values(feature, kind, kind.metaclass, self._registry)
         asked, faults = asked_values(attributes, kind.metaclass)
         self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in faults))
         given |= asked
@@ -160,15 +163,69 @@ class Builder:
                 return replace(told, reason=reason)
             notes.append(f"drawn as {called} is, too")
         self._drawn.add(element)
+        lacking = [*self._point_to(element, named_in(feature, kind, attributes), notes)]
+        if feature.role is Role.TASK:
+            notes, lacking = notes + lacking, []
+        lacking += missing(element, kind)
+        self.faults.update(dict.fromkeys(f"{_who(feature)}: {fault}" for fault in lacking))
+        name, path = self._add(element, feature, kind, given, found.rings[0])
+        return replace(told, became=kind.name, called=name, notes=tuple(notes), path=path)
+
+    def _refer(self, feature: MapFeature, decision: Decision, outcome: Outcome) -> Outcome:
+        """Add an element that has no shape, but leads to those that have; what is drawn is not used."""
+        kind = decision.kind
+        assert kind.metaclass is not None  # it has features that refer
+        element = self._registry.create(*kind.metaclass.key)
+        given, notes = drawn_values(feature, kind, kind.metaclass, self._registry)
+        asked, faults = asked_values(decision.attributes, kind.metaclass)
+        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in faults))
+        given |= asked
+        set_values(element, kind, given)
+        lacking = [*self._point_to(element, named_in(feature, kind, decision.attributes), notes)]
+        lacking = lacking or [*missing(element, kind)]
+        if lacking and feature.role is Role.TASK:
+            return replace(outcome, reason=f"{'; '.join(lacking)}; write the task in the model")
+        self.faults.update(dict.fromkeys(f"{_who(feature)}: {fault}" for fault in lacking))
+        for other in children(self._root(kind), kind.feature):
+            if metaclass_of(other) is kind.metaclass and label_of(other) == feature.name:
+                return replace(outcome, reason="the same is there already")
+        name, path = self._add(element, feature, kind, given, np.empty((0, 2)))
+        return replace(
+            outcome, became=kind.name, called=name, notes=(*decision.notes, *notes), path=path, shape=""
+        )
+
+    def _point_to(
+        self, element: Element, named: Mapping[str, Sequence[str]], notes: list[str]
+    ) -> Iterator[str]:
+        """Let references lead to what has such a name, else to the only one there is; yield what fails."""
+        for at in (each for each in metaclass_of(element).features if refers(each)):
+            assert isinstance(at.type, Metaclass)  # references lead to elements
+            roots = (*self._roots.values(), self._context)
+            there = [each for root in roots for each in descendants(root) if is_kind(each, *at.type.key)]
+            names = [self._called.get(name, name) for name in named.get(at.name, ())]
+            found = [[each for each in there if label_of(each) == name] for name in names]
+            wrong = next((k for k, each in enumerate(found) if len(each) != 1), None)
+            if wrong is not None:
+                known = ", ".join(dict.fromkeys(map(label_of, there)))
+                many = "several have" if found[wrong] else f"there is {known or 'none'}, and none has"
+                yield f"{at.name}: {many} the name {names[wrong]!r}"
+            elif found:
+                setattr(element, at.attribute, [each for (each,) in found] if at.many else found[-1][0])
+            elif at.required and len(there) == 1:
+                setattr(element, at.attribute, there if at.many else there[0])
+                notes.append(f"{at.name} is {label_of(there[0])}, the only one")
+
+    def _add(
+        self, element: Element, feature: MapFeature, kind: Kind, given: Mapping[str, object], outer: Floats
+    ) -> tuple[str, str]:
+        """Add an element to its model; return its name and its path there."""
         wanted = given.get("name")
         label = kind.symbol.label if kind.symbol is not None else kind.name
         name = self._names.unique(wanted if isinstance(wanted, str) else feature.name, label)
         element.name = name  # type: ignore[attr-defined]  # tasks and what is in a context have one
-        who = ": ".join(filter(None, (str(feature.place), repr(feature.name[:LONGEST_NAME]))))
-        self.faults.update(dict.fromkeys(f"{who}: {fault}" for fault in missing(element, kind)))
+        self._called[feature.name] = name
         self.comments[element] = comment_of(feature)
-        path = self._append(element, kind, found.rings[0])
-        return replace(told, became=kind.name, called=name, notes=tuple(notes), path=path)
+        return name, self._append(element, kind, outer)
 
     def _already(
         self, feature: MapFeature, kind: Kind, element: Element, stated: Mapping[str, object], other: Element
@@ -366,6 +423,10 @@ class Builder:
             notes.append(f"{kind.name} has no holes: these are left out")
 
 
+def _who(feature: MapFeature) -> str:
+    return ": ".join(filter(None, (str(feature.place), repr(feature.name[:LONGEST_NAME]))))
+
+
 def comment_of(feature: MapFeature) -> str:
     """Return where a feature stands, and its name, for a comment; its description if it stands in no file."""
     if not feature.place.file:
@@ -393,7 +454,11 @@ def _transformer(crs: str) -> Transformer:
 def _stated(element: Element, given: Mapping[str, object], found: DrawnShape) -> dict[str, object]:
     """Return the attributes of a new element that its drawing or the user states."""
     metaclass = metaclass_of(element)
-    names = {name for name, value in given.items() if value is not None and name != "name"}
+    names = {
+        name
+        for name, value in given.items()
+        if value is not None and name != "name" and not metaclass.feature(name).is_reference
+    }
     if found.heights is not None:
         names |= {"maxHeight", "altitude"} & metaclass.by_name.keys()
     stated = {metaclass.feature(name).attribute: None for name in sorted(names)}

@@ -8,11 +8,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_core.drawings.drawing import Geometry, MapFeature, Role
 from mmrs_core.errors import UnreadableError, UsageError
 from mmrs_core.languages.naming import nearest
 from mmrs_core.projects.kinds import ImportKinds, Kind
+
+if TYPE_CHECKING:
+    from mmrs_core.projects.building import Outcome
 
 _COMMA = re.compile(r"(?<!\\),")
 _UNTYPED = re.compile(r"[^\w .,:;+/()-]")
@@ -224,8 +228,11 @@ class Chooser:
             stated = self._kinds.stated(str(feature.properties.get("type", "")))
             if stated is not None and _fits(stated, feature):
                 return Decision(stated, "its property type")
+            if stated is not None and feature.role is Role.ELEMENT:
+                words = f"no {stated.name} is drawn as {_a(feature.geometry.value)}: it is a part of one"
+                return Decision(self._kinds.own("ignore"), feature.role.value, reason=words)
         if feature.role in _LEFT:
-            words = f"{_LEFT[feature.role]}; --as {quoted(feature.name)}=task makes a task of it"
+            words = f"{_LEFT[feature.role]}; --as {pattern_of(feature)}=task makes a task of it"
             return Decision(self._kinds.own("ignore"), feature.role.value, reason=words)
         if feature.role is Role.UNKNOWN:
             for text, by in [
@@ -265,10 +272,15 @@ def quoted(name: str, folders: Sequence[str] = ()) -> str:
     return f"'{pattern[:_LONGEST]}{rest}'" if pattern.strip("?/") else "'NAME'"
 
 
+def pattern_of(feature: MapFeature | Outcome) -> str:
+    """Return a pattern for a feature, which is not for those of its name in other folders."""
+    return quoted("/".join((*feature.folders[-1:], feature.name)) if feature.name.strip() else "")
+
+
 def _fits(kind: Kind, feature: MapFeature) -> bool:
     if kind.name == "home":
         return feature.geometry is Geometry.POINT
-    return bool({feature.geometry, shape_of(feature)} & set(kind.shapes))
+    return not kind.shapes or bool({feature.geometry, shape_of(feature)} & set(kind.shapes))
 
 
 def _a(noun: str) -> str:

@@ -29,7 +29,8 @@ class Kind:
         name: as options and reports have it, such as ``obstacle`` or ``PhotoGridTask``.
         feature: of the mission or context, in which its elements are; empty for homes and for nothing.
         metaclass: of its elements; None for homes and for nothing.
-        shapes: what holds its coordinates, by the geometry that it takes.
+        shapes: what holds its coordinates, by the geometry that it takes; empty where it is what it refers
+            to that has a shape.
         symbol: with the values that it begins with.
     """
 
@@ -105,9 +106,9 @@ class ImportKinds:
         return found[0] if len(found) == 1 else None
 
     def tasks(self) -> tuple[Kind, ...]:
-        """Return the types of tasks, by name."""
+        """Return the types of tasks with shapes, by name."""
         found = (kind for name in self._short_names() for kind in self._types[name])
-        return tuple(kind for kind in found if kind.feature == "tasks")
+        return tuple(kind for kind in found if kind.feature == "tasks" and kind.shapes)
 
     def usual(self, geometry: Geometry, *, waypoint: bool = False) -> Kind | str:
         """Return what features of a geometry usually become, or why that is not known."""
@@ -136,9 +137,14 @@ class ImportKinds:
         else:
             return None
         shapes = _shapes(metaclass.features)
-        if not shapes:
+        if not shapes and not (feature == "tasks" and any(map(refers, metaclass.features))):
             return None
         return Kind(metaclass.name, feature, metaclass, shapes, symbol_of(metaclass.ancestry, self._symbols))
+
+
+def refers(feature: Feature) -> bool:
+    """Return whether a feature leads to elements elsewhere."""
+    return feature.is_reference and not feature.containment and not feature.is_container
 
 
 def _shapes(features: Sequence[Feature]) -> dict[Geometry, Feature]:

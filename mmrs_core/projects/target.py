@@ -11,6 +11,7 @@ from mmrs_core.errors import InvalidModelError
 from mmrs_core.grounding.frame import frame_of, origin_of
 from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.modelset import project_files
+from mmrs_core.languages.sources import Source
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.pipeline import check_models, read_models
 from mmrs_core.projects.building import UniqueNames
@@ -91,7 +92,15 @@ def blank(folder: Path, title: str, contributions: Contributions) -> ImportTarge
     name = UniqueNames(()).unique(title, "imported mission")
     mission = create(MISSION, "Mission", name=name, team=create(MISSION, "Team"))
     files = {each: folder / f"{each}.xmi" for each in ("mission", "context")}
-    return ImportTarget(mission, create(CONTEXT, "Context", name=name), files)
+    return ImportTarget(mission, _to_stand_in(files["context"], create(CONTEXT, "Context", name=name)), files)
+
+
+def _to_stand_in(file: Path, root: Element) -> Element:
+    """Return the root of a model that is to be written to a file, so that others can refer to it."""
+    source = Source(str(file), file.resolve())
+    source.roots = (root,)
+    root._mmrs_source = source
+    return root
 
 
 def opened(folder: Path, contributions: Contributions) -> ImportTarget:
@@ -108,7 +117,7 @@ def opened(folder: Path, contributions: Contributions) -> ImportTarget:
     if origin_of(models.mission) is not None and frame_of(models.mission, models.context).latitude is None:
         words = "has no place on the Earth: give it a geographic origin, or its first robot a geographic home"
         raise InvalidModelError(f"{mission_file}: {words}")
-    context = models.context or contributions.languages.create(CONTEXT, "Context")
+    context = models.context or _to_stand_in(beside, contributions.languages.create(CONTEXT, "Context"))
     texts = {file: read_bytes(file) for file in (mission_file, context_file) if file is not None}
     known = frozenset((each.code, each.message) for each in (*faults, *check_models(models, contributions)))
     files = {"mission": mission_file, "context": beside}

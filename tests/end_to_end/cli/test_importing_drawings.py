@@ -146,7 +146,7 @@ def test_many_that_are_the_same_have_one_line_and_json_has_every_one(tmp_path, m
             "(left out)",
             "f.geojson:12",
             "Kite",
-            "it is a photo that was taken; --as 'Kite'=task makes a task of it",
+            "it is a photo that was taken; --as 'odd/Kite'=task makes a task of it",
         ],
     ]
     assert run(["import", "f.geojson", "--dry-run", "--json"]) == 0

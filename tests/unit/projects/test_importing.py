@@ -107,6 +107,14 @@ def test_features_become_what_their_role_words_and_shape_say(feature, became, by
     [
         (square("fence", role=Role.INCLUSION), "kept out of areas, not inside them"),
         (drawn("flown", (0, 0), (9, 9), role=Role.TRACK), "--as 'flown'=task makes a task of it"),
+        (
+            drawn("flown", (0, 0), (9, 9), role=Role.TRACK, folders=("logs", "tracks")),
+            "--as 'tracks/flown'=task makes",
+        ),
+        (
+            square("x", role=Role.ELEMENT, properties={"type": "PanelGroup"}),
+            "no PanelGroup is drawn as an area: it is a part of one",
+        ),
         (drawn("x", (5, 5), radius=1e6), "radius 1e+06 m: expected one above 0 and below 100000 m"),
         (drawn("x", (5, 5), radius=np.inf), "radius inf m: expected"),
         (drawn("Kite", (5, 5), role=Role.CHOSEN_RALLY_POINT), "it was chosen from the emergency areas"),
@@ -506,3 +514,67 @@ def test_a_mission_in_json_is_added_to(tmp_path):
 
 
 ADDING = replace(OPTIONS, robots=())
+
+
+PIPE = drawn("main pipe", (0, 50), (90, 50), properties={"type": "Pipeline"})
+SPARE = drawn("spare pipe", (0, 70), (90, 70), properties={"type": "Pipeline"})
+
+
+@pytest.mark.parametrize(
+    ("pipes", "choice", "led_to"),
+    [
+        ([PIPE], "look=FollowPipelineTask", "main pipe"),
+        ([PIPE, SPARE], "look=FollowPipelineTask:pipeline=spare pipe,height=2", "spare pipe"),
+    ],
+)
+def test_tasks_without_a_shape_lead_to_what_has_one(pipes, choice, led_to):
+    result = made(*pipes, drawn("look", (5, 5)), options=choices(choice))
+    assert result.outcomes[len(pipes)].became == "FollowPipelineTask"
+    (task,) = result.models.mission.tasks
+    assert task.pipeline.name == led_to
+
+
+@pytest.mark.parametrize(
+    ("pipes", "choice", "fault"),
+    [
+        ([], "look=FollowPipelineTask", "FollowPipelineTask needs pipeline: "),
+        ([PIPE, SPARE], "look=FollowPipelineTask", "FollowPipelineTask needs pipeline: "),
+        (
+            [PIPE],
+            "look=FollowPipelineTask:pipeline=pip",
+            "pipeline: there is main pipe, and none has the name 'pip'",
+        ),
+        ([PIPE, PIPE], "look=FollowPipelineTask:pipeline=none", "none has the name 'none'"),
+    ],
+)
+def test_what_a_task_is_to_lead_to_has_to_be_there(pipes, choice, fault):
+    with pytest.raises(ImportRefusedError) as refused:
+        made(*pipes, drawn("look", (5, 5)), options=choices(choice))
+    assert fault in str(refused.value.elements)
+
+
+def test_an_exported_task_whose_element_is_missing_is_left_out():
+    look = drawn("look", (5, 5), role=Role.TASK, properties={"type": "FollowPipelineTask", "pipeline": "x"})
+    assert "none has the name 'x'; write the task in the model" in outcome(look).reason
+
+
+def test_elements_in_a_task_come_back_from_properties():
+    properties = {
+        "type": "MeasureTask",
+        "actionName": "Sound",
+        "parameters[1].key": "gain",
+        "parameters[1].value": "3",
+        "parameters[0].key": "frequency",
+        "parameters[0].value": 200,
+        "parameters[0].unit": "Hz",
+    }
+    measuring = drawn("soundings", (5, 5), (9, 9), (30, 5), role=Role.TASK, properties=properties)
+    result = made(measuring)
+    assert "its property parameters[0].unit is left out" in result.outcomes[0].notes
+    (task,) = result.models.mission.tasks
+    assert [(each.key, each.value) for each in task.parameters] == [("frequency", "200"), ("gain", "3")]
+
+
+def test_settings_that_a_task_does_not_have_are_in_the_report():
+    survey = square("survey 1", role=Role.SURVEY, properties={"angle": 45, "sideOverlap": 0.7, "camera": "X"})
+    assert "PhotoGridTask has no angle, camera" in outcome(survey).notes

@@ -68,8 +68,8 @@ def test_a_plan_becomes_areas_paths_fences_and_points():
         [400.0],
     )
     assert (area.role, area.rings[0].tolist()) == (Role.SURVEY, FIELD)
-    assert (area.properties["angle"], area.properties["SideOverlap"]) == (30, 60)
-    assert (corridor.role, corridor.geometry, corridor.properties["CorridorWidth"]) == (
+    assert (area.properties["angle"], area.properties["sideOverlap"]) == (30, 0.6)
+    assert (corridor.role, corridor.geometry, corridor.properties["width"]) == (
         Role.CORRIDOR,
         Geometry.LINE,
         50,

@@ -31,6 +31,7 @@ COMPLEX = {
     "StructureScan": (Geometry.AREA, Role.STRUCTURE, "polygon"),
 }
 SHAPES = ("polygon", "polyline", "TransectStyleComplexItem", "type", "complexItemType", "CameraCalc")
+TAKEN = {*SETTINGS, "DistanceMode", "DistanceToSurfaceRelative", "version"}
 OURSELVES = "MMRS"
 """The ground station of plans that MMRS writes."""
 MAIN = {"fileType", "version", "groundStation", "mission", "geoFence", "rallyPoints"}
@@ -126,11 +127,11 @@ class _PlanReader:
             path.end()
             if kind in COMPLEX:
                 geometry, complex_role, key = COMPLEX[kind]
-                properties = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
-                properties |= _attributes(properties)
+                settings = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
+                properties = {k: v for k, v in settings.items() if k not in TAKEN} | _attributes(settings)
                 ring, what = self._list(item, key), f"{complex_role.value} {number}"
                 reference = HeightReference.NONE
-                if _above_sea(properties) and "altitude" in properties:
+                if _above_sea(settings) and "altitude" in properties:
                     reference, height = HeightReference.SEA_LEVEL, properties.pop("altitude")
                     ring = [[*each[:2], height] if isinstance(each, list) else each for each in ring]
                 self._add(geometry, [ring], what, item.line, complex_role, reference, properties=properties)
