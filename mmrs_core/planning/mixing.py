@@ -154,7 +154,7 @@ class MixedFilling:
         Args:
             mixture: of the task.
             groups: of two sorts at least, in their order.
-            ahead: whether each sort begins at the beginning of its work; else it does the end of it.
+            ahead: whether each sort begins at the beginning of its work, and not at its end.
             everyone: whether each robot must have a share.
         """
         self._mixture, self._groups, self._ahead, self._everyone = mixture, groups, ahead, everyone
@@ -212,7 +212,7 @@ class MixedFilling:
         return found
 
     def _fillings_of(self, index: int, runs: Runs) -> list[RowFilling]:
-        """Return the ways in which a group may do what runs of others leave."""
+        """Return how a group may do what runs of others leave."""
         if (index, runs) not in self._fillings:
             sort, group = self._groups[index]
             candidates = self._of_rest(sort, group, runs) if runs else group

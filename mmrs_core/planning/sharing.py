@@ -81,7 +81,7 @@ class Sharing:
 
 
 class Filling(Protocol):
-    """A way to share a work out among robots.
+    """A work shared out among robots.
 
     Attributes:
         begin: seconds at which the first of them would set out.

@@ -34,7 +34,7 @@ from mmrs_core.scene import (
     Transit,
 )
 from mmrs_core.scene.robots import BACK_SECONDS
-from mmrs_core.scene.timing import STANDING, Push, Rates, acting, bounded, noticing
+from mmrs_core.scene.timing import Rates, acting, bounded, noticing
 
 _Given: TypeAlias = tuple[float, float, Mapping[str, int]]
 """Seconds at which a signal is given at the earliest, and at the latest, and what is then known."""
@@ -122,7 +122,7 @@ class _Walk:
         hasty: see `timelines_of`.
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
-        gone: whether it has gone anywhere yet. push: with which it begins its next leg.
+        gone: whether it has gone anywhere yet.
         stops, known: see `Timeline`.
     """
 
@@ -135,7 +135,6 @@ class _Walk:
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
     gone: bool = False
-    push: Push | None = STANDING
     stops: list[Ride] = field(default_factory=list)
     known: list[Mapping[str, int]] = field(default_factory=lambda: [{}])
 
@@ -203,7 +202,6 @@ class _Walk:
         begin, ends, latest = (self.now, self.by, self.here, self.radius), [], step.end
         for _, arm in step.arms:
             self.now, self.by, self.here, self.radius = begin
-            self.push = None
             for inner in arm:
                 self.add(inner, given)
             if not arm:
@@ -213,7 +211,7 @@ class _Walk:
         for self.now, self.here, self.radius in ends:
             self.by = latest
             self._stay(0.0)
-        self.now, self.here, self.push = min(now for now, _, _ in ends), step.exit, None
+        self.now, self.here = min(now for now, _, _ in ends), step.exit
 
     def _transit(self, step: Transit) -> None:
         rates = self.kinematics.rates(step.speed)
@@ -243,11 +241,9 @@ class _Walk:
 
     def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
         soonest, latest = rates.soonest(), rates.latest()
-        legs, least, most = list(pairwise(points)), 0.0, 0.0
-        for leg in legs:
-            least += soonest.from_stop_to_stop(*leg, push=self.push)
-            most += latest.from_stop_to_stop(*leg, push=self.push)
-            self.push = rates.push(*leg, self.push)
+        legs = list(pairwise(points))
+        least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
+        most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
         slowest = min(rates.cruise, rates.climb, rates.descent)
         search = (self.radius / slowest if slowest > 0.0 else inf) if self.radius else 0.0
         early = self.now
@@ -256,14 +252,18 @@ class _Walk:
             self._overshoot(legs, early, speed or self.kinematics.cruise)
 
     def _overshoot(self, legs: Sequence[tuple[Position, Position]], early: float, speed: float) -> None:
-        """Add where the robot turns back beyond the ends of legs, for as long as that may take."""
+        """Add where the robot turns back beyond the ends of legs, for as long as that may take.
+
+        When it comes to a corner within a move is not known.
+        """
         soonest = self.kinematics.rates(speed).soonest()
         begin = early
         for one, two in legs:
             early += soonest.from_stop_to_stop(one, two)
             if not _upright(one, two):
                 beyond = (two, self.kinematics.beyond(one, two, speed))
-                since, until = max(begin, early - BACK_SECONDS), self.by + BACK_SECONDS
+                since = max(begin, early - BACK_SECONDS) if len(legs) == 1 else begin
+                until = self.by + BACK_SECONDS
                 place = self._place()
                 self.rides.append(Ride(beyond, since, until, (0.0,), self.radius, step=place, over=place + 2))
 
