@@ -48,7 +48,7 @@ class Search:
             weights: of the longest tour, and of the mean of all.
         """
         n, m = field.sizes[:2]
-        self._loops: Any = compiled(ruin_loops) if n >= _MANY and can_compile() else ruin_loops
+        self._loops: Any = compiled(ruin_loops, arrays=False) if n >= _MANY and can_compile() else ruin_loops
         listed = self._loops is ruin_loops
         arrays: tuple[Any, ...] = field
         self._field = Field(*(each.tolist() for each in arrays)) if listed and n <= _DENSE else field

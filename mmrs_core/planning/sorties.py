@@ -27,12 +27,13 @@ class Pilot:
         paces: by (soonest, parts in one go): when each begins and ends, see `paced`.
     """
 
-    def __init__(self, travel: Travel, *, homebound: bool = True) -> None:
+    def __init__(self, travel: Travel, *, homebound: bool = True, answering: float = 0.0) -> None:
         """Make it.
 
         Args:
             travel: routes of the robot.
             homebound: whether it always keeps enough to go home, even if it may stay where it ends.
+            answering: share by which answers to its actions may delay all that it does, at most.
         """
         self.travel = travel
         self.robot, self.kinematics = travel.robot, travel.kinematics
@@ -40,7 +41,8 @@ class Pilot:
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
         # The check counts with moves that take longer than expected.
-        self.limit = min(self.kinematics.endurance, by_energy) / (1.0 + self.kinematics.timing.spread)
+        longer = (1.0 + self.kinematics.timing.spread) * (1.0 + answering)
+        self.limit = min(self.kinematics.endurance, by_energy) / longer
         self.paces: dict[tuple[bool, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
         self._exits: dict[Position, float] = {}
         self._homes: dict[Position, float] = {}

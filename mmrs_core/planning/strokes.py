@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
 
 from mmrs_core.scene import ActionAt, Kinematics, Position, Robot, RobotType, Stroke
+from mmrs_core.scene.timing import acting
 
 _SAME = 1e-9
 
@@ -103,6 +104,24 @@ def action_seconds(robot_type: RobotType, action: ActionAt) -> float:
     named = [devices[action.device]] if action.device in devices else list(devices.values())
     found = [device.actions[action.action] for device in named if action.action in device.actions]
     return found[0].duration if found else 0.0
+
+
+def answering_share(strokes: Sequence[Stroke], robot: Robot) -> float:
+    """Return by which share answers to actions delay strokes done in order, beyond the spread of all."""
+    if robot.kinematics is None or not strokes:
+        return 0.0
+    timing = robot.kinematics.timing
+    spread, later, seconds = 1.0 + timing.spread, 0.0, 0.0
+    here = strokes[0].points[0]
+    for stroke in strokes:
+        rates = robot.kinematics.rates(stroke.speed)
+        for each in (action_seconds(robot.type, action) for action in stroke.commands):
+            later += max(0.0, acting(each, timing).longest - spread * each)
+            seconds += each
+        for place in (stroke.points[0], stroke.points[-1]):
+            seconds += rates.from_stop_to_stop(here, place)
+            here = place
+    return later / (spread * seconds) if seconds > 0.0 else 0.0
 
 
 def missing_action(robot_type: RobotType, action: ActionAt) -> str | None:
