@@ -144,12 +144,7 @@ class Builder:
         except UnfitError as unfit:
             self.refuse_open(kind, feature.place, repr(feature.name[:LONGEST_NAME]), str(unfit), feature.name)
             return replace(told, reason=str(unfit))
-        element = self._registry.create(*kind.metaclass.key)
-        given, doubts = drawn_values(feature, kind, kind.metaclass, self._registry)
-        asked, faults = asked_values(attributes, kind.metaclass)
-        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in faults))
-        given |= asked
-        set_values(element, kind, given)
+        element, given, doubts = self._made(feature, decision, attributes)
         notes = [*decision.notes, *found.notes, *doubts]
         exported = feature.role is Role.TASK and feature.properties.get("type") == kind.name
         heights = self._heights(element, kind, found, given, notes, usual=not exported)
@@ -159,7 +154,9 @@ class Builder:
             # one drawing may have a shape twice, for different tasks
             twice = other not in self.comments or called == feature.name
             if metaclass_of(other) is kind.metaclass and twice:
-                reason = self._already(feature, kind, element, _stated(element, given, found), other)
+                reason = self._already(
+                    feature, kind, element, _stated(element, given, heights=found.heights is not None), other
+                )
                 return replace(told, reason=reason)
             notes.append(f"drawn as {called} is, too")
         self._drawn.add(element)
@@ -174,25 +171,50 @@ class Builder:
     def _refer(self, feature: MapFeature, decision: Decision, outcome: Outcome) -> Outcome:
         """Add an element that has no shape, but leads to those that have; what is drawn is not used."""
         kind = decision.kind
-        assert kind.metaclass is not None  # it has features that refer
-        element = self._registry.create(*kind.metaclass.key)
-        given, notes = drawn_values(feature, kind, kind.metaclass, self._registry)
-        asked, faults = asked_values(decision.attributes, kind.metaclass)
-        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in faults))
-        given |= asked
-        set_values(element, kind, given)
+        element, given, notes = self._made(feature, decision, decision.attributes)
         lacking = [*self._point_to(element, named_in(feature, kind, decision.attributes), notes)]
         lacking = lacking or [*missing(element, kind)]
         if lacking and feature.role is Role.TASK:
             return replace(outcome, reason=f"{'; '.join(lacking)}; write the task in the model")
         self.faults.update(dict.fromkeys(f"{_who(feature)}: {fault}" for fault in lacking))
-        for other in children(self._root(kind), kind.feature):
-            if metaclass_of(other) is kind.metaclass and label_of(other) == feature.name:
-                return replace(outcome, reason="the same is there already")
+        there = [each for each in children(self._root(kind), kind.feature) if each not in self.comments]
+        for other in (each for each in there if metaclass_of(each) is kind.metaclass):
+            called, different = label_of(other), self._unlike(element, other, given)
+            if not different:
+                also = "" if called == feature.name else f": {called}"
+                return replace(outcome, reason=f"the same is there already{also}")
+            if called == feature.name:
+                words = f"a {kind.name} of this name is there already, with {', '.join(different)}"
+                outcome = replace(outcome, reason=f"{words}; change it there")
+        if outcome.reason:
+            return outcome
         name, path = self._add(element, feature, kind, given, np.empty((0, 2)))
         return replace(
             outcome, became=kind.name, called=name, notes=(*decision.notes, *notes), path=path, shape=""
         )
+
+    def _unlike(self, element: Element, other: Element, given: Mapping[str, object]) -> list[str]:
+        """Return what another element without a shape has instead of what is stated of an element."""
+        led = (at for at in metaclass_of(element).features if refers(at))
+        elsewhere = [at.name for at in led if getattr(element, at.attribute) != getattr(other, at.attribute)]
+        return [
+            *(f"another {name}" for name in elsewhere),
+            *differences(element, other, _stated(element, given)),
+        ]
+
+    def _made(
+        self, feature: MapFeature, decision: Decision, attributes: Mapping[str, tuple[str, ...]]
+    ) -> tuple[Element, dict[str, object], list[str]]:
+        """Return a new element, the values that are drawn or asked for, and what there is to note on them."""
+        kind = decision.kind
+        assert kind.metaclass is not None  # homes and what is left out are made otherwise
+        element = self._registry.create(*kind.metaclass.key)
+        given, notes = drawn_values(feature, kind, kind.metaclass, self._registry)
+        asked, faults = asked_values(attributes, kind.metaclass)
+        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in faults))
+        given |= asked
+        set_values(element, kind, given)
+        return element, given, notes
 
     def _point_to(
         self, element: Element, named: Mapping[str, Sequence[str]], notes: list[str]
@@ -451,7 +473,7 @@ def _transformer(crs: str) -> Transformer:
     return Transformer.from_crs("EPSG:4326", crs, always_xy=True)
 
 
-def _stated(element: Element, given: Mapping[str, object], found: DrawnShape) -> dict[str, object]:
+def _stated(element: Element, given: Mapping[str, object], *, heights: bool = False) -> dict[str, object]:
     """Return the attributes of a new element that its drawing or the user states."""
     metaclass = metaclass_of(element)
     names = {
@@ -459,7 +481,7 @@ def _stated(element: Element, given: Mapping[str, object], found: DrawnShape) ->
         for name, value in given.items()
         if value is not None and name != "name" and not metaclass.feature(name).is_reference
     }
-    if found.heights is not None:
+    if heights:
         names |= {"maxHeight", "altitude"} & metaclass.by_name.keys()
     stated = {metaclass.feature(name).attribute: None for name in sorted(names)}
     values = {name: getattr(element, name) for name in stated}

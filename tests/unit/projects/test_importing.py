@@ -578,3 +578,22 @@ def test_elements_in_a_task_come_back_from_properties():
 def test_settings_that_a_task_does_not_have_are_in_the_report():
     survey = square("survey 1", role=Role.SURVEY, properties={"angle": 45, "sideOverlap": 0.7, "camera": "X"})
     assert "PhotoGridTask has no angle, camera" in outcome(survey).notes
+
+
+def test_tasks_of_one_name_that_lead_elsewhere_are_not_the_same(tmp_path):
+    def look(pipe):
+        return drawn(
+            "look", (5, 5), role=Role.TASK, properties={"type": "FollowPipelineTask", "pipeline": pipe}
+        )
+
+    first = made(PIPE, SPARE, look("main pipe"), look("spare pipe"), folder=tmp_path)
+    assert [task.pipeline.name for task in first.models.mission.tasks] == ["main pipe", "spare pipe"]
+    saved(first)
+    again = made(look("main pipe"), look("spare pipe"), folder=tmp_path, into=True).outcomes
+    assert [each.reason for each in again[:2]] == [
+        "the same is there already",
+        "the same is there already: look 2",
+    ]
+    lower = replace(look("main pipe"), properties={**look("main pipe").properties, "height": 9})
+    (found,) = made(lower, folder=tmp_path, into=True).outcomes[:1]
+    assert "of this name is there already, with height 1.5 instead of 9.0; change it there" in found.reason
