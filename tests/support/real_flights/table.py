@@ -87,7 +87,7 @@ def _upset(
         happens=happens,
         ends=ends,
         fault=fault,
-        deviation=None if not resumed else 5.0 if craft is ROVER else 3.0,  # it turns round beside its line
+        deviation=3.0 if resumed else None,
         landing=4.0 if craft is not COPTER else 1.0,
         parameters=parameters or {},
         speedup=speedup,

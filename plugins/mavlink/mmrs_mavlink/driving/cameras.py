@@ -6,11 +6,15 @@ from collections.abc import Iterable
 
 from mmrs_runtime.records.steps import StepRecord
 
+from ..profiles.needs import TRIGGER_DISTANCE, VIDEO_START_CAPTURE, VIDEO_STOP_CAPTURE
 from ..program import Operate, Robot
 from ..vehicles.vehicle import Vehicle
 
-TRIGGER_DISTANCE = 206
-STATES = {TRIGGER_DISTANCE: TRIGGER_DISTANCE, 2500: 2500, 2501: 2500}
+STATES = {
+    TRIGGER_DISTANCE: TRIGGER_DISTANCE,
+    VIDEO_START_CAPTURE: VIDEO_START_CAPTURE,
+    VIDEO_STOP_CAPTURE: VIDEO_START_CAPTURE,
+}
 """Commands after which a camera continues on its own, and which of them concern the same function."""
 
 
@@ -31,6 +35,11 @@ class Cameras:
             self._last[action.device, STATES[action.command]] = action
             if action.command == TRIGGER_DISTANCE and action.params[0] == 0.0:
                 del self._last[action.device, TRIGGER_DISTANCE]
+
+    @property
+    def work(self) -> bool:
+        """Return whether one continues on its own."""
+        return any(action.command != VIDEO_STOP_CAPTURE for action in self._last.values())
 
     def restore(self, vehicle: Vehicle) -> None:
         """Send all cameras their last continuous commands again.

@@ -60,12 +60,12 @@ class ThreadedVehicle(Vehicle):
             self._come_to,
             equipment.guard,
         )
-        self._way = WayBack(robot, self._moves, equipment.vehicle, equipment.home_tolerance)
+        self._cameras = Cameras(robot, equipment.records)
+        self._way = WayBack(robot, self._moves, equipment.vehicle, self._cameras, equipment.home_tolerance)
         uploads = uploads_of(robot, fenced=equipment.fence)
         self._flights = uploads.flights
         self._setup = Setup(robot, equipment, uploads, self._watch, self._lost_link, self._way, self.note)
         self._steps = {step.move: step for step in robot.steps}
-        self._cameras = Cameras(robot, equipment.records)
         self._move = ""
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()

@@ -13,6 +13,7 @@ from ..program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from ..steps.responses import policy_for
 from ..vehicles.footing import aside, footing, misplaced, there
 from ..vehicles.vehicle import Vehicle
+from .cameras import Cameras
 from .moves import IN_THE_AIR, Moves
 from .worker import Job
 
@@ -22,19 +23,23 @@ Point = tuple[str, Place]
 class WayBack:
     """Finds the path from a vehicle's position to the beginning of a leg of its program."""
 
-    def __init__(self, robot: Robot, moves: Moves, vehicle: Vehicle, home_tolerance: float) -> None:
+    def __init__(
+        self, robot: Robot, moves: Moves, vehicle: Vehicle, cameras: Cameras, home_tolerance: float
+    ) -> None:
         """Find ways for that vehicle; on the ground it may be that far from where it is to stand, metres."""
-        self._robot, self._moves, self._vehicle = robot, moves, vehicle
+        self._robot, self._moves, self._vehicle, self._cameras = robot, moves, vehicle, cameras
         self._tolerance = home_tolerance
         self._steps = {step.move: step for step in robot.steps}
 
     def job(self, passed: Sequence[str], begun: str) -> Job:
-        """Return what brings the vehicle to where it was when it ended the last of these moves.
+        """Return what brings the vehicle to where it can begin its next move.
 
-        A vehicle on the ground where its sortie began takes off and retraces its path. One that is
-        in the air, on its path or ahead on the leg or run that it had begun, continues along that path. One
-        that is anywhere else is refused, since no path from there is verified; if its autopilot has begun to
-        bring it home or down, it is left to that.
+        A vehicle on the ground where its sortie began takes off and retraces its path. One that is in the
+        air, on its path or ahead on the run that it had begun, continues along that path. On the leg that it
+        had begun, it ends the leg from where it is, since a car that turns round leaves its line; where a
+        camera works along the leg, it goes back to the beginning, so that no image is missed. One that is
+        anywhere else is refused, since no path from there is verified; if its autopilot has begun to bring
+        it home or down, it is left to that.
 
         If it is disarmed, the battery must not be low, unless a policy tolerates that.
 
@@ -125,6 +130,9 @@ class WayBack:
         if leg < len(came):
             self._moves.track = came[:leg]
             return self._legs(came[leg:])
+        if leg == len(came) and not self._cameras.work:
+            self._moves.track = came
+            return []
         run = self._run(begun)
         flown = list(self._places(last, run[run.index(begun) :]))[: leg - len(came)] if begun else []
         self._moves.track = [*came, *flown]

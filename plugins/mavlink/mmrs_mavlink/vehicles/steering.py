@@ -92,12 +92,18 @@ class Steering:
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
         """Go straight to a place; `through`: without a stop there.
 
+        One that steers like a car and stands there already stays: to a target that it has passed, a Rover
+        drives round by several metres.
+
         Raises:
             FaultError: it does not get there.
         """
         self._mode_control.arm()
         self._speed = speed
         self._point(look)
+        if self._shunting.radius and self._arrived(place, None):
+            self._unpoint(look)
+            return
         self._shunting.face(place, self._acceptance)
         begun = self._telemetry.here()
         way = distance(begun, place)

@@ -156,3 +156,10 @@ def test_a_rover_that_looks_there_already_is_sent_straight_there():
     away, kinds = sent_to(ASIDE_DEGREES - 3.0, 6.0, 1.5)
     assert away <= 0.5
     assert DRIVES not in kinds
+
+
+@pytest.mark.parametrize(("radius", "is_sent"), [(1.5, False), (0.0, True)])
+def test_a_rover_that_stands_at_its_target_is_sent_there_only_if_it_turns_on_its_own(radius, is_sent):
+    away, kinds = sent_to(180.0, 0.4, radius)
+    assert away <= 0.5
+    assert ("SET_POSITION_TARGET_GLOBAL_INT" in kinds) == is_sent

@@ -9,10 +9,12 @@ from mmrs_multicopter.testing import LAND, MULTICOPTER, go_to, robot_program, ta
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.testing.programs import move, program
+from mmrs_mavlink.driving.cameras import Cameras
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.way_back import WayBack, sortie_of
 from mmrs_mavlink.plugin.controllers import robot_of
-from mmrs_mavlink.program import Object, Policy
+from mmrs_mavlink.profiles.needs import TRIGGER_DISTANCE, VIDEO_START_CAPTURE, VIDEO_STOP_CAPTURE
+from mmrs_mavlink.program import Object, Operate, Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import distance, offset
@@ -71,12 +73,15 @@ class Vehicle(DryVehicle):
         super().go_to(place, speed, look, through)
 
 
-def recovered(passed_until, begun, vehicle, tolerance=20.0, policies=()):
+OFF = Cameras(ROBOT, ())
+
+
+def recovered(passed_until, begun, vehicle, tolerance=20.0, policies=(), cameras=OFF):
     """Return where a vehicle goes, after the log of a run that has ended moves up to that one."""
     robot = replace(ROBOT, policies=policies, reserve=0.2)
     moves = Moves(robot, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     passed = MOVES[: MOVES.index(passed_until) + 1]
-    WayBack(robot, moves, vehicle, tolerance).job(passed, begun).run()
+    WayBack(robot, moves, vehicle, cameras, tolerance).job(passed, begun).run()
     return vehicle.went, [move for move, _ in moves.track]
 
 
@@ -133,8 +138,21 @@ def test_in_the_air_on_its_way_it_goes_on_from_there():
     assert track == ["up", "out", "s1"]
 
 
-def test_on_the_leg_that_was_interrupted_it_goes_back_to_its_beginning():
-    assert recovered("out", "s1", Vehicle(20.0, 50.0, 20.0))[0] == [(0, 50, 20)]
+@pytest.mark.parametrize(
+    ("commands", "went"),
+    [
+        ((), []),
+        (((TRIGGER_DISTANCE, 5.0),), [(0, 50, 20)]),
+        (((TRIGGER_DISTANCE, 5.0), (TRIGGER_DISTANCE, 0.0)), []),
+        (((VIDEO_START_CAPTURE, 0.0),), [(0, 50, 20)]),
+        (((VIDEO_START_CAPTURE, 0.0), (VIDEO_STOP_CAPTURE, 0.0)), []),
+    ],
+)
+def test_the_leg_that_was_interrupted_is_repeated_only_where_a_camera_works_along_it(commands, went):
+    cameras = Cameras(ROBOT, ())
+    for command, value in commands:
+        cameras.note(Operate("camera", "any", command, (value,)))
+    assert recovered("out", "s1", Vehicle(20.0, 50.0, 20.0), cameras=cameras) == (went, ["up", "out"])
 
 
 def test_ahead_on_a_run_that_it_flew_by_itself_it_goes_back_along_it():
@@ -170,7 +188,7 @@ def test_a_way_back_is_looked_for_before_the_vehicle_hears_a_word():
     vehicle = Vehicle(-60.0, 20.0, 20.0)
     moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     with pytest.raises(RefusedError, match="bring it home"):
-        WayBack(ROBOT, moves, vehicle, 20.0).check(MOVES[: MOVES.index("s1") + 1], "s2")
+        WayBack(ROBOT, moves, vehicle, OFF, 20.0).check(MOVES[: MOVES.index("s1") + 1], "s2")
     assert vehicle.went == []
     assert moves.track == []
 
@@ -189,7 +207,7 @@ def test_nobody_looks_for_objects_before_the_vehicle_sets_out():
         return place
 
     moves = Moves(robot, vehicle, Clock(1e6), {"tent": locate}, lambda kind, name, content: None)
-    way, passed = WayBack(robot, moves, vehicle, 20.0), MOVES[: MOVES.index("s1") + 1]
+    way, passed = WayBack(robot, moves, vehicle, OFF, 20.0), MOVES[: MOVES.index("s1") + 1]
     way.check(passed, "s2")
     assert not asked
     way.know(passed, "s2")
@@ -202,7 +220,7 @@ def test_nobody_looks_for_objects_before_the_vehicle_sets_out():
 def test_a_vehicle_that_has_not_begun_must_be_at_home():
     moves = Moves(ROBOT, Vehicle(500.0), Clock(1e6), {}, lambda kind, name, content: None)
     with pytest.raises(RefusedError, match=r"it stands 50\d m from its home: carry it home"):
-        WayBack(ROBOT, moves, Vehicle(500.0), 20.0).check(["start"], "up")
+        WayBack(ROBOT, moves, Vehicle(500.0), OFF, 20.0).check(["start"], "up")
 
 
 def test_the_corner_of_a_trajectory_is_on_the_way():
@@ -214,7 +232,7 @@ def test_the_corner_of_a_trajectory_is_on_the_way():
 def known(passed_until, begun, vehicle):
     """Return the places that a vehicle in the air counts as having come past: moves, and metres from home."""
     moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
-    WayBack(ROBOT, moves, vehicle, 20.0).know(MOVES[: MOVES.index(passed_until) + 1], begun)
+    WayBack(ROBOT, moves, vehicle, OFF, 20.0).know(MOVES[: MOVES.index(passed_until) + 1], begun)
     assert vehicle.went == []
     return [(move, tuple(map(round, offset(ROBOT.home, place)[:2]))) for move, place in moves.track]
 
@@ -236,7 +254,7 @@ def test_a_vehicle_on_the_ground_has_come_past_nothing():
 def test_where_a_way_leads_back_over_itself_the_later_leg_is_meant():
     vehicle = Vehicle(0.0, 30.0, 20.0)
     went, track = recovered("s4", "back", vehicle)
-    assert went == [(0, 70, 20)]
+    assert went == []
     assert track == ["up", "out", "s1", "s2", "s3", "s4"]
 
 
@@ -263,7 +281,7 @@ def delivered(passed_until, begun, vehicle):
     """Return what a vehicle counts as having come past, after it has landed elsewhere than at home."""
     moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     order = [step.move for step in PARCEL.steps]
-    WayBack(PARCEL, moves, vehicle, 20.0).know(order[: order.index(passed_until) + 1], begun)
+    WayBack(PARCEL, moves, vehicle, OFF, 20.0).know(order[: order.index(passed_until) + 1], begun)
     return [(move, tuple(map(round, offset(PARCEL.home, place)[:2]))) for move, place in moves.track]
 
 
@@ -284,7 +302,7 @@ def test_a_robot_takes_off_again_where_its_program_has_landed_it():
     vehicle = Vehicle(72.0, 3.0)
     moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     order = [step.move for step in PARCEL.steps]
-    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("c") + 1], "d").run()
+    WayBack(PARCEL, moves, vehicle, OFF, 20.0).job(order[: order.index("c") + 1], "d").run()
     assert vehicle.went == [("up", 15.0), (70, 60, 15)]
 
 
@@ -292,7 +310,7 @@ def test_a_robot_takes_off_on_whatever_ground_it_stands():
     vehicle = Vehicle(70.0, 0.0, 6.0, ground=6.0)
     moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     order = [step.move for step in PARCEL.steps]
-    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("again") + 1], "c").run()
+    WayBack(PARCEL, moves, vehicle, OFF, 20.0).job(order[: order.index("again") + 1], "c").run()
     assert vehicle.went == [("up", 15.0)]
 
 
@@ -301,7 +319,7 @@ def test_a_robot_that_stands_where_it_was_to_land_stays_there_on_whatever_ground
     vehicle.start = vehicle.state().place
     moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     order = [step.move for step in PARCEL.steps]
-    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("b") + 1], "down").run()
+    WayBack(PARCEL, moves, vehicle, OFF, 20.0).job(order[: order.index("b") + 1], "down").run()
     assert vehicle.went == []
 
 
@@ -319,14 +337,14 @@ def test_a_robot_that_stands_where_it_was_to_land_stays_there_on_whatever_ground
 def test_a_vehicle_may_stand_where_its_sortie_began_or_where_it_was_to_land(passed, begun, starts):
     order = [step.move for step in PARCEL.steps]
     moves = Moves(PARCEL, Vehicle(), Clock(1e6), {}, lambda kind, name, content: None)
-    found = WayBack(PARCEL, moves, Vehicle(), 20.0).starts(order[: order.index(passed) + 1], begun)
+    found = WayBack(PARCEL, moves, Vehicle(), OFF, 20.0).starts(order[: order.index(passed) + 1], begun)
     assert [tuple(map(round, offset(PARCEL.home, start)[:2])) for start in found] == starts
 
 
 def test_a_robot_that_came_home_instead_of_landing_flies_there_again():
     vehicle, order = Vehicle(), [step.move for step in PARCEL.steps]
     moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
-    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("b") + 1], "down").run()
+    WayBack(PARCEL, moves, vehicle, OFF, 20.0).job(order[: order.index("b") + 1], "down").run()
     assert vehicle.went == [("up", 20.0), (70, 0, 20)]
 
 
@@ -336,5 +354,5 @@ def test_a_robot_that_has_waited_and_been_nowhere_goes_on_at_home():
     robot = robot_of(behaviour.robots[0], target_input(behaviour))
     moves = Moves(robot, Vehicle(), Clock(1e6), {}, lambda kind, name, content: None)
     for passed, begun in ((["start", "one"], "two"), (["start", "one", "two"], "up")):
-        WayBack(robot, moves, Vehicle(), 20.0).know(passed, begun)
+        WayBack(robot, moves, Vehicle(), OFF, 20.0).know(passed, begun)
     assert moves.track == []
