@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.planning.effort import Effort
+    from mmrs_core.planning.explaining import PlanExplanation
     from mmrs_core.scene import Area, Part, Plan, RobotType, Scene
     from mmrs_core.simulation.run import SimulatedRun
     from mmrs_core.transformation.engine import Trace
@@ -135,6 +136,13 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     from mmrs_core.planning.planner import plan as planned
 
     return planned(scene, seed=seed, effort=effort)
+
+
+def explain(scene: Scene, plan: Plan) -> PlanExplanation:
+    """Return why a plan is as it is: what alternatives would cost, and which limits bind."""
+    from mmrs_core.planning.explaining import explain as explained
+
+    return explained(scene, plan)
 
 
 def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[bl.Behaviour, Trace]:

@@ -38,6 +38,13 @@ TimeLimit = Annotated[
         help="Search for a better plan for SECONDS. Default: a number of steps, the same plan each time.",
     ),
 ]
+Explain = Annotated[
+    bool,
+    typer.Option(
+        "--explain",
+        help="Explain the plan: critical path, limits, and the cost of assigning other robots.",
+    ),
+]
 
 Duration = Annotated[
     float,

@@ -11,8 +11,16 @@ import typer
 
 from mmrs_core.cli.conversion import SchemaLocation, places_in
 from mmrs_core.cli.output import say, say_json, tell
-from mmrs_core.cli.parameters import Context, Project, Robots, Seed, TimeLimit, robot_files
-from mmrs_core.cli.plan_words import plan_lines, plan_summary
+from mmrs_core.cli.parameters import (
+    Context,
+    Explain,
+    Project,
+    Robots,
+    Seed,
+    TimeLimit,
+    robot_files,
+)
+from mmrs_core.cli.plan_words import explanation_lines, explanation_summary, plan_lines, plan_summary
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
 from mmrs_core.cli.session import CommandStages, Session, require_safe
 from mmrs_core.cli.settings import Json, settings_of
@@ -58,6 +66,7 @@ def plan(
     robots: Robots = None,
     seed: Seed = 0,
     time_limit: TimeLimit = None,
+    explain: Explain = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a behaviour written by hand.")] = False,
     stop_after: Annotated[
         Stage | None,
@@ -78,6 +87,8 @@ def plan(
         session, project, context=context, robots=robot_files(robots), seed=seed, time_limit=time_limit
     )
     if stop_after is not None:
+        if explain:
+            raise typer.BadParameter("--explain goes with a whole plan, not with --stop-after")
         say_json({"stage": stop_after.value, "value": _VALUES[stop_after](stages)})
         return 0
     folder = folder_of(project)
@@ -93,9 +104,13 @@ def plan(
     save(stages.transformed[0], file, session.contributions, places)
     if json:
         summary = plan_summary(stages.scene, stages.plan)
+        if explain:
+            summary = {**summary, "explanation": explanation_summary(stages.explanation)}
         say_json({"behaviour": file, **summary, "verdicts": stages.verdicts})
     else:
         for line in plan_lines(stages.scene, stages.plan):
+            say(line)
+        for line in explanation_lines(stages.explanation) if explain else ():
             say(line)
         say(f"written: {file}")
     return 0

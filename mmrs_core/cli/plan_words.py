@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import ceil
+from typing import TYPE_CHECKING
 
 from mmrs_core.cli.output import counted, table
-from mmrs_core.pictures.figures import clock, energy, length
+from mmrs_core.pictures.explanations import sections_of
+from mmrs_core.pictures.figures import clock, energy, length, within
 from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
+
+if TYPE_CHECKING:
+    from mmrs_core.planning.explaining import Alternative, PlanExplanation
 
 _MOST_NOTES = 4
 _WIDEST = 44
@@ -40,7 +44,7 @@ def _within(plan: Plan) -> str:
     """Return by how much a plan is longer than any at most, where what is known says something."""
     if plan.makespan > _TELLING * plan.lower_bound:
         return ""
-    return f" (within {ceil(100.0 * (plan.makespan / plan.lower_bound - 1.0) - 1e-6)} % of the best possible)"
+    return f" ({within(plan.makespan, plan.lower_bound)})"
 
 
 def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
@@ -71,6 +75,57 @@ def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
         ],
         "notes": plan.notes,
     }
+
+
+def explanation_lines(explanation: PlanExplanation) -> Iterator[str]:
+    """Yield why a plan is as it is, part by part."""
+    for part in sections_of(explanation):
+        yield ""
+        yield part.title
+        yield from (f"  {sentence}" for sentence in part.sentences)
+        if part.rows:
+            yield from table(part.head, part.rows)
+
+
+def explanation_summary(explanation: PlanExplanation) -> Mapping[str, object]:
+    """Return why a plan is as it is, as JSON has it; times are seconds."""
+    return {
+        "lastRobot": explanation.backs[0][0] if explanation.backs else None,
+        "backs": dict(explanation.backs),
+        "criticalPath": [
+            {
+                "robot": link.robot,
+                "task": link.task or None,
+                "begin": link.begin,
+                "end": link.end,
+                "spent": dict(link.spent),
+            }
+            for link in explanation.chain
+        ],
+        "limits": [
+            {"name": each.name, "cost": each.cost, "margin": each.margin or None}
+            for each in explanation.limits
+        ],
+        "tasks": [
+            {
+                "name": task.task,
+                "robots": task.robots,
+                "alternatives": [_alternative(each) for each in task.alternatives],
+                "unable": task.unable,
+                "untried": task.untried,
+            }
+            for task in explanation.tasks
+        ],
+        "idle": [
+            {"robot": robot} if best is None else {"robot": robot, "task": best[0], **_alternative(best[1])}
+            for robot, best in explanation.idle.items()
+        ],
+    }
+
+
+def _alternative(each: Alternative) -> Mapping[str, object]:
+    changes = {"later": each.later, "taskLater": each.task_later, "busyLonger": each.longer}
+    return {"robots": each.robots, **({"fault": each.fault} if each.fault else changes)}
 
 
 def tasks_of(robot: RobotPlan) -> tuple[str, ...]:

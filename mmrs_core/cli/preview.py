@@ -15,6 +15,7 @@ from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.parameters import (
     Assume,
     Context,
+    Explain,
     Robots,
     Seed,
     TimeLimit,
@@ -30,6 +31,7 @@ from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.verdict_words import verdict_rows
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InfeasibleError, InvalidModelError
+from mmrs_core.pictures.explanations import sections_of
 
 if TYPE_CHECKING:
     from mmrs_core.pictures.preview.picture import Picture
@@ -55,6 +57,7 @@ def preview(
     robots: Robots = None,
     seed: Seed = 0,
     time_limit: TimeLimit = None,
+    explain: Explain = False,
     assume: Assume = None,
     logs: Annotated[
         list[Path] | None,
@@ -75,9 +78,12 @@ def preview(
     session = Session(settings_of(call))
     types = robot_files(robots)
     folder = output if output is not None else folder_of(project)
+    alone = without_mission(project)
+    if explain and (logs or is_behaviour(session, alone)):
+        raise typer.BadParameter("--explain goes with a mission, which is planned")
     if logs:
         picture = _of_flight(session, behaviour_file(project), context, types, assume, logs)
-    elif is_behaviour(session, alone := without_mission(project)):
+    elif is_behaviour(session, alone):
         picture = _of_behaviour(session, alone, context, types, assume)
     elif assume:
         raise typer.BadParameter(
@@ -89,6 +95,8 @@ def preview(
         )
         with drawn_on_failure(stages, folder):
             picture = picture_of(stages)
+            if explain:
+                picture = replace(picture, explanation=sections_of(stages.explanation))
     refuse_inputs((folder / PAGE, folder / MAP), session.inputs)
     written = write_pictures(picture, folder)
     if json:

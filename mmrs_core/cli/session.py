@@ -16,7 +16,15 @@ from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import Status, Verdict
 from mmrs_core.pictures.figures import clock
-from mmrs_core.pipeline import BehaviourContext, plan, read_models, refusals, valid_models, verify
+from mmrs_core.pipeline import (
+    BehaviourContext,
+    explain,
+    plan,
+    read_models,
+    refusals,
+    valid_models,
+    verify,
+)
 from mmrs_core.planning.effort import Effort
 from mmrs_core.stages import Stages
 
@@ -26,6 +34,7 @@ if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.planning.explaining import PlanExplanation
     from mmrs_core.plugins import Plugins
     from mmrs_core.scene import Plan, Scene
 
@@ -129,6 +138,13 @@ class CommandStages(Stages):
         self._effort = Effort(self._time_limit, monotonic, show)
         with ended_by_interrupt(self._effort.stop):
             return plan(scene, seed=seed, effort=self._effort)
+
+    @cached_property
+    def explanation(self) -> PlanExplanation:
+        """Return why the plan is as it is."""
+        scene, plan = self.scene, self.plan
+        with progress("explaining the plan"):
+            return explain(scene, plan)
 
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:

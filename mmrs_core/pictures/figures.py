@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isinf
+from math import ceil, isinf
 
 _MINUTE = 60
 _HOUR = 3600
@@ -68,3 +68,12 @@ def heights(low: float, high: float) -> str:
     if isinf(high):
         return f"from {length(low)} up"
     return f"up to {length(high)}" if isinf(low) else f"{length(low)} to {length(high)}"
+
+
+def within(makespan: float, lower_bound: float) -> str:
+    """Return by how much a plan is longer than any at most.
+
+    >>> within(103.0, 100.0)
+    'within 3 % of the best possible'
+    """
+    return f"within {ceil(100.0 * (makespan / lower_bound - 1.0) - 1e-6)} % of the best possible"

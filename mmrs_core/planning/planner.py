@@ -52,7 +52,7 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     jobs = jobs_of(scene)
     team = Team(scene)
     _refuse([*team.shortfalls(), *_shared_choices(scene, jobs)], "no plan")
-    teams, effort = _Remembered(_teams(team)), effort or Effort()
+    teams, effort = _Remembered(teams_to_try(team)), effort or Effort()
     effort.least = least_makespan(team, jobs)
     find = partial(find_decisions, jobs=jobs, effort=effort)
     best: Mapping[str, int] = {}
@@ -115,7 +115,7 @@ class _ShortError(InfeasibleError):
     """No robot is left to do some job, perhaps only because of constraints put on the team."""
 
 
-def _teams(team: Team) -> Iterator[Team]:
+def teams_to_try(team: Team) -> Iterator[Team]:
     """Yield a team, and those to try where no robot of it is left for some job.
 
     Robots that need not return may keep enough to go home, to recharge there; or they may not, and end

@@ -8,6 +8,7 @@ from math import inf
 from typing import TypeAlias
 
 from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.pictures.explanations import ExplanationPart
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.scene import AreaUse, Part, Point, Position, Ring
 
@@ -307,6 +308,7 @@ class Picture:
         more_problems: how many problems there are beside those.
         gaps: what the map does not show, or not whole; what is not drawn at all comes first.
         checks: what was found of the safety of its behaviour: (property, words).
+        explanation: why its plan is as it is; empty where that was not asked for.
     """
 
     title: str
@@ -324,6 +326,7 @@ class Picture:
     more_problems: int = 0
     gaps: tuple[MapGap, ...] = ()
     checks: Details = ()
+    explanation: tuple[ExplanationPart, ...] = ()
 
     @property
     def planned(self) -> bool:

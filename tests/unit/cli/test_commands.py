@@ -170,6 +170,7 @@ def test_no_arguments_show_the_help(line, capsys):
         (["valdate"], "no such command 'valdate'. Did you mean 'validate', 'calibrate'? try 'mmrs --help'"),
         (["plan", "a", "--stop-after", "lunch"], "lunch"),
         (["plan", "a", "--seed", "x"], "--seed"),
+        (["plan", "a", "--explain", "--stop-after", "plan"], "--explain goes with a whole plan"),
         (["generate", "a"], "mmrs: missing: --target, --output; try 'mmrs generate --help'"),
         (["control", "hodl"], "mmrs: hodl: unknown command; expected one of hold, resume"),
         (["explain", "."], ".: expected FILE:LINE; for a folder, add --robot, --move or --task"),

@@ -1,0 +1,50 @@
+import json
+
+from plain_scenes import robot, scene, task, visit
+
+from mmrs_core.cli.plan_words import explanation_lines, explanation_summary
+from mmrs_core.planning.explaining import explain
+from mmrs_core.planning.planner import plan
+
+TEXT = [
+    "",
+    "What determines the mission time",
+    "  'Brezza' finishes last, at 2:09: 0:42 after 'Alba'",
+    "  no plan ends before 1:27, so this one is within 48 % of the best possible",
+    "  from  to    robot   task    time spent",
+    "  0:00  0:42  Alba    gate    transit 0:30, launch 0:12",
+    "  0:42  1:24  Brezza  roof    transit 0:30, launch 0:12",
+    "  1:24  2:09  Brezza  return  transit 0:30, landing 0:15",
+    "",
+    "Limits",
+    "  binding: dependencies",
+    "  limit         mission would end without it  margin",
+    "  dependencies  0:42 sooner                   'Brezza' waits for 'gate' of 'Alba'",
+    "  deadlines     no sooner                     'gate' ends 18 s before its deadline",
+    "  robotsWanted  no sooner",
+    "  charge        no sooner                     'Brezza' uses 87 of the 1200 s of a charge (7 %)",
+    "",
+    "Why these robots",
+    "  each alternative was planned, with all other tasks as they are",
+    "  'Alba' cannot do 'roof': has no work for it",
+    "  task  robots  alternative     mission ends  task ends   robots busy",
+    "  gate  Alba    Cirro instead   as planned    as planned  0:02 longer",
+    "                Brezza instead  0:14 later    0:06 later  1:13 shorter",
+    "  roof  Brezza  Cirro instead   0:02 later    0:01 later  0:02 longer",
+    "",
+    "Robots without a task",
+    "  'Cirro' would not make the mission end sooner: at best it would take 'gate' (Cirro instead)",
+]
+
+
+def test_an_explanation_reads_well_and_is_json():
+    team = [robot("Alba"), robot("Brezza", (60.0, 0.0, 0.0)), robot("Cirro", (5.0, 0.0, 0.0))]
+    works = {
+        "gate": visit((-300.0, 0.0, 20.0)),
+        "roof": {"Brezza": visit((100.0, 300.0, 20.0)), "Cirro": visit((100.0, 300.0, 20.0))},
+    }
+    tasks = {"gate": task("gate", wanted=1, deadline=60.0)}
+    whole = scene(team, works, after=[("gate", "roof")], tasks=tasks)
+    explanation = explain(whole, plan(whole))
+    assert list(explanation_lines(explanation)) == TEXT
+    assert "lastRobot" in json.dumps(explanation_summary(explanation), allow_nan=False)
