@@ -14,11 +14,10 @@ from math import dist, inf
 
 from mmrs_core.planning.critical_path import Link, critical_path
 from mmrs_core.planning.jobs import Job, jobs_of
-from mmrs_core.planning.planner import teams_to_try
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import distance_to_keep
-from mmrs_core.planning.team import Team
+from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.scene import Branch, Launch, Plan, Recharge, Recover, RobotPlan, Scene, Serve, Step
 
 _MOST = 400_000
@@ -226,7 +225,9 @@ class _Explaining:
             other = schedule(self._team, self._jobs, decisions)
             if not isinstance(other, Schedule):
                 continue
-            broken = next((reason for reason, _ in broken_times(self._team, other.spans)), "")
+            broken = next(
+                (f"'{task}' {words}" for task, words, _ in broken_times(self._team, other.spans)), ""
+            )
             each = Alternative(
                 names,
                 other.makespan - found.makespan,

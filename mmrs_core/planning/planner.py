@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -13,6 +13,13 @@ from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
+from mmrs_core.planning.remedies import (
+    counted,
+    for_all_charges,
+    for_long_sorties,
+    for_times,
+    or_else,
+)
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import (
@@ -22,7 +29,7 @@ from mmrs_core.planning.separation import (
     stacked_altitudes,
     starting_later,
 )
-from mmrs_core.planning.team import Team
+from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.scene import Plan, Scene
 
 
@@ -69,7 +76,7 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
             continue
         found, best = made, best if made is found else wanted
     if found is None:
-        raise refusal
+        raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return replace(found, lower_bound=effort.least)
 
 
@@ -90,7 +97,7 @@ def _plan_asking(
         try:
             return _plan_with(each.wanting(wanted) if wanted else each, jobs, find, best)
         except _ShortError as error:
-            shortage = InfeasibleError(str(error), error.reasons)
+            shortage = error
     raise shortage
 
 
@@ -111,22 +118,21 @@ class _NotBetterError(InfeasibleError):
     """A plan is not better than one that was found before, even before its robots are kept apart."""
 
 
-class _ShortError(InfeasibleError):
+class _UnexplainedError(InfeasibleError):
+    """There is no plan of some sort; the reasons are found only if there is none of any sort."""
+
+    def __init__(self, what: str, find_reasons: Callable[[], Sequence[str]]) -> None:
+        super().__init__(what)
+        self._find_reasons = find_reasons
+
+    def in_full(self) -> InfeasibleError:
+        """Return the same with its reasons."""
+        reasons = self._find_reasons()
+        return InfeasibleError(_words(str(self), reasons), reasons)
+
+
+class _ShortError(_UnexplainedError):
     """No robot is left to do some job, perhaps only because of constraints put on the team."""
-
-
-def teams_to_try(team: Team) -> Iterator[Team]:
-    """Yield a team, and those to try where no robot of it is left for some job.
-
-    Robots that need not return may keep enough to go home, to recharge there; or they may not, and end
-    further away.
-    """
-    yield team
-    everyone = frozenset(team.pilots)
-    returning = frozenset(name for name, pilot in team.pilots.items() if pilot.robot.return_home)
-    others = [each for each in dict.fromkeys((everyone, returning)) if each != team.homebound]
-    yield from (Team(team.scene, homebound=each) for each in others)
-    yield from (Team(team.scene, homebound=each, fine=True) for each in (*others, team.homebound))
 
 
 _DEAR = 1.01
@@ -208,9 +214,8 @@ def _plan_of(
     """Return a plan as it was found, and as its robots keep apart; refuse one that is not better."""
     decisions, found = find(team, in_turns=in_turns)
     if isinstance(found, Shortfall):
-        reasons = _reasons(team, jobs, found)
-        raise _ShortError(_words("no plan", reasons), reasons)
-    _refuse([reason for reason, _ in broken_times(team, found.spans)], "no plan keeps all times")
+        raise _ShortError("no plan", partial(_reasons, team, jobs, found))
+    _refuse_late(team, jobs, found.spans)
     recorded = schedule(team, jobs, decisions, record=True)
     if isinstance(recorded, Shortfall):
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
@@ -219,7 +224,7 @@ def _plan_of(
         raise _NotBetterError("no better plan")
     made = _kept_apart(team, jobs, decisions, first, best)
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
-    _refuse([reason for reason, _ in broken_times(team, spans)], "no plan keeps all times")
+    _refuse_late(team, jobs, spans)
     return first, made
 
 
@@ -267,6 +272,11 @@ def _refuse(reasons: Sequence[str], what: str) -> None:
         raise InfeasibleError(_words(what, reasons), reasons)
 
 
+def _refuse_late(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, float]]) -> None:
+    if broken_times(team, spans):
+        raise _UnexplainedError("no plan keeps all times", lambda: [*for_times(team, jobs, spans)])
+
+
 def _words(what: str, reasons: Sequence[str]) -> str:
     more = f" ({len(reasons)} reasons)" if len(reasons) > 1 else ""
     return f"{what}: {reasons[0]}{more}"
@@ -279,35 +289,49 @@ def _reasons(team: Team, jobs: Sequence[Job], found: Shortfall) -> list[str]:
         for task in job.tasks():
             if team.too_long(task):
                 short = "; ".join(team.short_of_charge(task))
-                reasons.append(f"task '{task}' is too long for every robot ({short})")
+                remedy = or_else([*for_long_sorties(team, task)])
+                reasons.append(f"task '{task}' is too long for every robot ({short}){remedy}")
+    if reasons:
+        return reasons
     job = next(job for job in jobs if job.name == found.job)
-    return reasons or [_general(team, job)]
+    return [_general(team, jobs, job) + or_else([*for_all_charges(team, jobs, job)])]
 
 
-def _general(team: Team, job: Job) -> str:
+def _general(team: Team, jobs: Sequence[Job], job: Job) -> str:
     if job.choice is not None:
-        return f"fork '{job.name}': no robot can do all of its branches (they are one robot's work)"
+        why = _unable(team, job)
+        return f"fork '{job.name}' is one robot's work, and no robot can do all of its branches ({why})"
     task = team.tasks[job.name]
-    whole = min(
-        each.seconds(0, len(each) - 1)
-        for robot in team.able(task.name)
-        if (each := team.forwards(task.name, robot)) is not None
-    )
+    materials = [team.forwards(task.name, robot) for robot in team.able(task.name)]
+    laid_out = [each for each in materials if each is not None]
+    whole = min(each.seconds(0, len(each) - 1) for each in laid_out)
     charges = "; ".join(
         f"{name}: {team.pilots[name].limit:.0f} s a charge"
         + (", cannot recharge" if team.pilots[name].kinematics.recharge is None else "")
         for name in team.able(task.name)
     )
-    robots = "robot" if task.wanted == 1 else "robots"
-    wanted = f" by exactly {task.wanted} {robots}" if task.wanted is not None else ""
+    wanted = f" by exactly {counted(task.wanted)}" if task.wanted is not None else ""
     short = "; ".join(team.short_of_charge(task.name))
     alone = f"; too long for some: {short}" if short else ""
     apart = team.sorts(task.name) if task.wanted is not None else ""
     alone += f"; {apart}" if apart else ""
-    return (
-        f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted}, after what comes before,"
-        f" by the robots that can do it ({charges}{alone}){_short_of_charges(team, task.name, whole)}"
-    )
+    begin = f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted}:"
+    pieces = max(map(len, laid_out))
+    if (task.wanted or 1) > pieces:
+        return f"{begin} it has no cuts for more than {counted(pieces)}"
+    before = " after the tasks before it" if len(jobs) > 1 else ""
+    missing = _short_of_charges(team, task.name, whole)
+    return f"{begin} charges do not suffice{before} ({charges}{alone}){missing}"
+
+
+def _unable(team: Team, job: Job) -> str:
+    """Return which robots cannot do some task of a choice, and why; the others lack the charge."""
+    why = []
+    for name in team.pilots:
+        refused = [(task, team.refusals[task, name]) for task in job.tasks() if (task, name) in team.refusals]
+        task, reason = refused[0] if refused else ("", "its charge does not suffice")
+        why.append(f"{name}: '{task}' {reason}" if task else f"{name}: {reason}")
+    return "; ".join(why)
 
 
 def _short_of_charges(team: Team, task: str, whole: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, product
-from math import inf, prod
+from math import ceil, inf, prod
 from random import Random
 from typing import TypeAlias
 
@@ -114,25 +114,24 @@ def cost_of(team: Team, found: Schedule | Shortfall) -> Cost:
     """
     if isinstance(found, Shortfall):
         return (inf, float(found.left), 0.0)
-    broken = sum(late for _, late in broken_times(team, found.spans))
+    broken = sum(late for _, _, late in broken_times(team, found.spans))
     return (broken, found.makespan, sum(found.backs.values()))
 
 
-def broken_times(team: Team, spans: Mapping[str, tuple[float, float]]) -> list[tuple[str, float]]:
-    """Return (what is broken, by how many seconds) for deadlines and longest durations of tasks."""
+def broken_times(team: Team, spans: Mapping[str, tuple[float, float]]) -> list[tuple[str, str, float]]:
+    """Return (task, what is broken, by how many seconds) for deadlines and longest durations of tasks."""
     broken = []
     for task in team.scene.tasks:
         begin, end = spans.get(task.name, (0.0, 0.0))
         if task.deadline is not None and end > task.deadline + 1e-6:
             late = end - task.deadline
-            words = (
-                f"ends {end:.0f} s after the start, its deadline is {task.deadline:.0f} s: {late:.0f} s late"
-            )
-            broken.append((f"task '{task.name}' {words}", late))
+            ended = f"ends {ceil(end)} s after the start"
+            words = f"{ended}, its deadline is {task.deadline:g} s: {ceil(late)} s late"
+            broken.append((task.name, words, late))
         if task.longest is not None and end - begin > task.longest + 1e-6:
-            over = end - begin - task.longest
-            words = f"takes {end - begin:.0f} s, {task.longest:.0f} s are allowed: {over:.0f} s too long"
-            broken.append((f"task '{task.name}' {words}", over))
+            over, taken = end - begin - task.longest, ceil(end - begin)
+            words = f"takes {taken} s, {task.longest:g} s are allowed: {ceil(over)} s too long"
+            broken.append((task.name, words, over))
     return broken
 
 

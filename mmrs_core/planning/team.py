@@ -241,13 +241,21 @@ class Team:
             largest = max(map(len, self.circles(task.name)), default=0)
             if not largest:
                 yield f"task '{task.name}' can be done by no robot ({self.why_not(task.name)})"
-            elif task.wanted is not None and task.wanted > largest:
-                others = "; ".join(each for each in (self.sorts(task.name), self.why_not(task.name)) if each)
-                rest = f" ({others})" if others else ""
-                yield (
-                    f"task '{task.name}' wants {task.wanted} robots, {largest} can share it:"
-                    f" {task.wanted - largest} short{rest}"
-                )
+            elif task.wanted is not None and task.wanted > self.sharers(task.name):
+                few = self._too_few(task.name, task.wanted)
+                yield f"task '{task.name}' wants {task.wanted} robots, {few}"
+
+    def _too_few(self, task: str, wanted: int) -> str:
+        """Return why too few robots can share a task, and what would do."""
+        if self.whole(task):
+            return "but one robot must do all of it; robotsWanted of 1 would do"
+        most = max(self.circles(task), key=len)
+        short = wanted - len(most)
+        others = "; ".join(each for each in (self.sorts(task), self.why_not(task)) if each)
+        return (
+            f"{len(most)} can share it: {short} short{f' ({others})' if others else ''};"
+            f" robotsWanted of {len(most)}, or {short} more like '{most[0]}', would do"
+        )
 
     def sorts(self, task: str) -> str:
         """Return which robots can share a task among themselves only; empty where all can."""
@@ -280,6 +288,20 @@ class Team:
             material = self.forwards(task, name)
             for fault in charge_faults(material, self.pilots[name]) if material is not None else ():
                 yield f"{name}: {fault}"
+
+
+def teams_to_try(team: Team) -> Iterator[Team]:
+    """Yield a team, and those to try where no robot of it is left for some job.
+
+    Robots that need not return may keep enough to go home, to recharge there; or they may not, and end
+    further away.
+    """
+    yield team
+    everyone = frozenset(team.pilots)
+    returning = frozenset(name for name, pilot in team.pilots.items() if pilot.robot.return_home)
+    others = [each for each in dict.fromkeys((everyone, returning)) if each != team.homebound]
+    yield from (Team(team.scene, homebound=each) for each in others)
+    yield from (Team(team.scene, homebound=each, fine=True) for each in (*others, team.homebound))
 
 
 def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:

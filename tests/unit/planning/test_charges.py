@@ -70,7 +70,9 @@ def test_pieces_that_are_too_long_for_different_robots_are_not_told_to_be_too_lo
     line = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS)
     sound(scene([west, east], {"a": line}))
     tasks = {"a": task("a", wanted=1)}
-    with pytest.raises(InfeasibleError, match=r"cannot be done by exactly 1 robot,.*too long for some: west"):
+    with pytest.raises(
+        InfeasibleError, match=r"cannot be done by exactly 1 robot: .*too long for some: west"
+    ):
         plan(scene([west, east], {"a": line}, tasks=tasks))
 
 

@@ -202,18 +202,6 @@ def test_wanted_robots_all_get_a_share():
     assert sum(bool(each.steps) for each in sound(whole).robots) == 3
 
 
-def test_more_robots_wanted_than_can_share_is_refused():
-    whole = scene(TWO, {"a": visit((9.0, 9.0, 9.0))}, tasks={"a": task("a", wanted=3)})
-    with pytest.raises(InfeasibleError, match="wants 3 robots, 2 can share it: 1 short"):
-        plan(whole)
-
-
-def test_indivisible_work_wanted_by_two_is_refused():
-    whole = scene(TWO, {"a": visit((9.0, 9.0, 9.0))}, tasks={"a": task("a", wanted=2)})
-    with pytest.raises(InfeasibleError, match="cannot be done by exactly 2 robots"):
-        plan(whole)
-
-
 def test_an_earliest_time_is_kept_by_the_clock():
     whole = scene([robot()], {"a": visit((100.0, 0.0, 20.0))}, tasks={"a": task("a", earliest=500.0)})
     found = sound(whole)
@@ -363,8 +351,9 @@ def test_a_choice_cannot_be_shared():
     after = [("f", "a", "sunny"), ("f", "b")]
     tasks = {"a": task("a", wanted=2)}
     whole = scene(TWO, works, after=after, controls=(control("f", "Fork"),), tasks=tasks)
-    with pytest.raises(InfeasibleError, match="one robot's work"):
+    with pytest.raises(InfeasibleError) as caught:
         plan(whole)
+    assert any("one robot's work" in reason for reason in caught.value.reasons)
 
 
 def test_a_robot_that_does_not_move_is_refused():

@@ -1,0 +1,144 @@
+"""What a refusal proposes is enough, and a little less is not."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from plain_scenes import road, robot, scene, task, visit, with_kinematics
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.planner import plan
+
+CUTS = tuple(range(50, 5500, 50))
+USABLE = 0.8
+FOLDED = road(*((500.0 * (k % 2), 20.0 * (k // 2), 20.0) for k in range(12)), cuts=CUTS)
+ERRANDS = {name: visit((300.0, 10.0 * k, 20.0), hold=30.0) for k, name in enumerate("abcd")}
+
+
+def refusal(whole):
+    """Return the only reason why there is no plan."""
+    with pytest.raises(InfeasibleError) as caught:
+        plan(whole)
+    (reason,) = caught.value.reasons
+    return reason
+
+
+def with_robots(whole, **features):
+    return replace(whole, robots=tuple(with_kinematics(each, **features) for each in whole.robots))
+
+
+def with_tasks(whole, **features):
+    return replace(whole, tasks=tuple(replace(each, **features) for each in whole.tasks))
+
+
+def more(whole, count):
+    """Return a scene with further robots like the first one."""
+    first, works = whole.robots[0], dict(whole.works)
+    copies = [replace(first, name=f"new{k}") for k in range(count)]
+    works |= {
+        (name, each.name): work for each in copies for (name, who), work in works.items() if who == first.name
+    }
+    return replace(whole, robots=(*whole.robots, *copies), works=works)
+
+
+@pytest.mark.parametrize(
+    "whole",
+    [
+        scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))}),
+        scene([with_kinematics(robot(), endurance=115.0)], {"a": visit((400.0, 0.0, 20.0), slow_down=0.5)}),
+        scene([with_kinematics(robot(), endurance=120.0, recharge=None)], ERRANDS),
+        scene([with_kinematics(robot(), endurance=150.0, recharge=None)], {"a": FOLDED}),
+    ],
+)
+def test_a_lifetime_that_is_proposed_is_enough_and_two_seconds_less_are_not(whole):
+    (lifetime,) = re.findall(r"a lifetime of (\d+) s \(now", refusal(whole))
+    assert plan(with_robots(whole, endurance=USABLE * int(lifetime), energy=1e9))
+    refusal(with_robots(whole, endurance=USABLE * (int(lifetime) - 2.0), energy=1e9))
+
+
+def test_a_home_that_is_proposed_is_near_enough_and_two_metres_before_is_not():
+    whole = scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))})
+    ((east, away),) = re.findall(r"a home at \((\d+), 0\), (\d+) m away", refusal(whole))
+    assert int(east) + int(away) == 1000
+    assert plan(replace(whole, robots=(replace(whole.robots[0], home=(float(east), 0.0, 0.0)),)))
+    refusal(replace(whole, robots=(replace(whole.robots[0], home=(float(east) - 2.0, 0.0, 0.0)),)))
+
+
+def test_batteries_that_can_be_charged_are_proposed_where_they_help():
+    whole = scene([with_kinematics(robot(), endurance=150.0, recharge=None)], {"a": FOLDED})
+    assert "a rechargeTime for the batteries" in refusal(whole)
+    assert plan(with_robots(whole, recharge=300.0))
+
+
+def test_robots_that_are_proposed_are_enough_and_one_less_is_not():
+    whole = scene([with_kinematics(robot(), endurance=120.0, recharge=None)], ERRANDS)
+    (count,) = re.findall(r"(\d) more robots like 'r1'", refusal(whole))
+    assert plan(more(whole, int(count)))
+    refusal(more(whole, int(count) - 1))
+
+
+def test_a_number_of_robots_that_is_proposed_is_enough_and_others_are_not():
+    west, east = (
+        with_kinematics(robot(name, (east, 0.0, 0.0)), endurance=130.0)
+        for name, east in (("west", 0.0), ("east", 1000.0))
+    )
+    line = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS[:19])
+    whole = scene([west, east], {"a": line}, tasks={"a": task("a", wanted=1)})
+    assert "robotsWanted of 2 would do" in refusal(whole)
+    assert plan(with_tasks(whole, wanted=2))
+
+
+def test_too_many_robots_wanted_may_be_fewer_or_have_company():
+    line = road((0.0, 50.0, 20.0), (400.0, 50.0, 20.0), cuts=CUTS[:7])
+    whole = scene([robot("r1"), robot("r2", (20.0, 0.0, 0.0))], {"a": line}, tasks={"a": task("a", wanted=4)})
+    assert "2 short; robotsWanted of 2, or 2 more like 'r1', would do" in refusal(whole)
+    assert plan(with_tasks(whole, wanted=2))
+    assert plan(more(whole, 2))
+    refusal(more(whole, 1))
+    refusal(with_tasks(whole, wanted=3))
+
+
+@pytest.mark.parametrize(
+    ("work", "words"),
+    [
+        (visit((9.0, 9.0, 9.0)), "but one robot must do all of it; robotsWanted of 1 would do"),
+        (
+            road((0.0, 9.0, 9.0), (90.0, 9.0, 9.0)),
+            "it has no cuts for more than 1 robot; robotsWanted of 1 would do",
+        ),
+    ],
+)
+def test_work_that_cannot_be_shared_may_be_one_robots(work, words):
+    whole = scene([robot("r1"), robot("r2", (20.0, 0.0, 0.0))], {"a": work}, tasks={"a": task("a", wanted=2)})
+    assert words in refusal(whole)
+    assert plan(with_tasks(whole, wanted=1))
+
+
+@pytest.mark.parametrize(
+    ("work", "limit", "proposed"),
+    [
+        (
+            visit((1000.0, 0.0, 20.0)),
+            "deadline",
+            r"no robot can end it sooner; a deadline of (\d+) s would do",
+        ),
+        (road((0.0, 0.0, 20.0), (1005.0, 0.0, 20.0)), "longest", r"s too long; (\d+) s would do"),
+    ],
+)
+def test_a_time_that_is_proposed_is_enough_and_a_second_less_is_not(work, limit, proposed):
+    whole = scene([robot()], {"a": work}, tasks={"a": task("a", **{limit: 30.0})})
+    (seconds,) = re.findall(proposed, refusal(whole))
+    assert plan(with_tasks(whole, **{limit: float(seconds)}))
+    refusal(with_tasks(whole, **{limit: float(seconds) - 1.0}))
+
+
+def test_deadlines_that_are_proposed_together_are_enough():
+    works = {"a": visit((1000.0, 0.0, 20.0)), "b": visit((-300.0, 0.0, 20.0))}
+    whole = scene([robot()], works, tasks={name: task(name, deadline=45.0) for name in works})
+    with pytest.raises(InfeasibleError) as caught:
+        plan(whole)
+    found = [re.findall(r"task '(\w)'.*a deadline of (\d+) s", each) for each in caught.value.reasons]
+    late = {name: float(seconds) for ((name, seconds),) in found}
+    tasks = tuple(replace(each, deadline=late.get(each.name, each.deadline)) for each in whole.tasks)
+    assert plan(replace(whole, tasks=tasks))
+    assert any("as the only task it would end after 42 s" in each for each in caught.value.reasons)
