@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import chain
+from math import floor
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
@@ -16,9 +18,9 @@ from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.remedies import (
     counted,
     for_all_charges,
-    for_long_sorties,
     for_times,
     or_else,
+    too_long,
 )
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
@@ -135,6 +137,9 @@ class _ShortError(_UnexplainedError):
     """No robot is left to do some job, perhaps only because of constraints put on the team."""
 
 
+_FEW_PAIRS = 100
+"""Jobs times robots up to which a refusal is worth another whole plan."""
+
 _DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
 
@@ -172,8 +177,21 @@ def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) 
         if refusal is not None:
             break
     if best is None:
-        raise InfeasibleError(str(refusal), refusal.reasons if refusal else ()) from refusal
+        if refusal is None:
+            raise InfeasibleError("no plan")
+        raise _UnexplainedError("no plan keeps robots apart", partial(_too_near, team, jobs, refusal))
     return best
+
+
+def _too_near(team: Team, jobs: Sequence[Job], refusal: TooNearError) -> list[str]:
+    """Return why robots cannot be kept apart, with a smaller distance at which they can."""
+    scene = team.scene
+    least = floor(10.0 * ((scene.minimum_separation or 0.0) - refusal.short)) / 10.0
+    if least > 0.0 and len(jobs) * len(scene.robots) <= _FEW_PAIRS:
+        with suppress(InfeasibleError):
+            plan(replace(scene, minimum_separation=least))
+            return [f"{refusal}; a minimumSeparation of {least:g} m would do"]
+    return [str(refusal)]
 
 
 def _unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
@@ -284,13 +302,7 @@ def _words(what: str, reasons: Sequence[str]) -> str:
 
 def _reasons(team: Team, jobs: Sequence[Job], found: Shortfall) -> list[str]:
     """Return what is short for the job that could not be done, and for all others that are alike."""
-    reasons = []
-    for job in jobs:
-        for task in job.tasks():
-            if team.too_long(task):
-                short = "; ".join(team.short_of_charge(task))
-                remedy = or_else([*for_long_sorties(team, task)])
-                reasons.append(f"task '{task}' is too long for every robot ({short}){remedy}")
+    reasons = [too_long(team, task) for job in jobs for task in job.tasks() if team.too_long(task)]
     if reasons:
         return reasons
     job = next(job for job in jobs if job.name == found.job)

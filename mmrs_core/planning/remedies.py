@@ -11,13 +11,16 @@ from mmrs_core.planning.materials import shortages
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.scene import Robot, Scene
+from mmrs_core.scene import Area, Robot, Scene
 
 _MOST_PAIRS = 1000
 """Jobs times robots up to which remedies for the whole mission are tried."""
 
 _MOST_ROBOTS = 3
 """Further robots that are tried."""
+
+_MOST_AREAS = 10
+"""Areas in the way that are tried."""
 
 _LONGEST = 64.0
 """Times the lifetime that are tried at most."""
@@ -45,16 +48,34 @@ def counted(robots: int) -> str:
     return f"{robots} robot{'' if robots == 1 else 's'}"
 
 
-def for_long_sorties(team: Team, task: str) -> Iterator[str]:
-    """Yield what would make a task that is too long for every robot fit into sorties of the best of them."""
+def too_long(team: Team, task: str) -> str:
+    """Return why a task fits into no sortie of any robot, and what would do for the best of them."""
     worst = {name: _worst(team, task, name) for name in team.able(task)}
-    if not worst:
-        return
-    name = min(worst, key=lambda each: worst[each][0])
+    name = min(worst, key=lambda each: worst[each][0], default="")
+    why = "; ".join(team.short_of_charge(task))
+    if not name:
+        return f"task '{task}' is left to no robot"
     short, index = worst[name]
-    robot, limit = team.scene.robot(name), team.pilots[name].limit
     if short == inf:
-        return
+        remedies = [*_passages(team, task, why)]
+        return f"task '{task}' can be reached by no robot ({why}){or_else(remedies)}"
+    remedies = [*_for_long_sorties(team, task, name, short, index)]
+    return f"task '{task}' is too long for every robot ({why}){or_else(remedies)}"
+
+
+def _passages(team: Team, task: str, why: str) -> Iterator[str]:
+    """Yield the areas that are in the way of robots, each of which alone keeps them from a task."""
+    for name in team.able(task):
+        robot = team.scene.robot(name)
+        blocking = [each for each in team.scene.kept_from(robot) if f"'{each.name}'" in why][:_MOST_AREAS]
+        opened = [f"'{each.name}'" for each in blocking if _fits(team, task, robot, without=each)]
+        if opened:
+            yield f"for '{name}' a passage through {' or '.join(opened)}"
+
+
+def _for_long_sorties(team: Team, task: str, name: str, short: float, index: int) -> Iterator[str]:
+    """Yield what would make a task fit into sorties of a robot."""
+    robot, limit = team.scene.robot(name), team.pilots[name].limit
     lifetime = _lifetime(team.scene, robot)
     longer = ceil(lifetime * (limit + short) / limit - 1e-6) if lifetime < inf else 0
     if longer and _fits(team, task, _lasting(robot, longer / lifetime)):
@@ -125,11 +146,17 @@ def _worst(team: Team, task: str, robot: str) -> tuple[float, int]:
     return max(((each, i) for i, each in enumerate(short)), default=(inf, 0))
 
 
-def _fits(team: Team, task: str, robot: Robot) -> bool:
-    """Return whether a robot has sorties for each portion of a task, finely divided."""
+def _fits(team: Team, task: str, robot: Robot, without: Area | None = None) -> bool:
+    """Return whether a robot has sorties for each portion of a task, finely divided; without an area."""
     works = {(task, robot.name): team.scene.works[task, robot.name]}
     scene = replace(
-        team.scene, robots=(robot,), tasks=(team.tasks[task],), dependencies=(), works=works, refusals={}
+        team.scene,
+        robots=(robot,),
+        tasks=(team.tasks[task],),
+        areas=tuple(each for each in team.scene.areas if each is not without),
+        dependencies=(),
+        works=works,
+        refusals={},
     )
     alone = Team(scene, fine=True, homebound=team.homebound & {robot.name})
     return alone.forwards(task, robot.name) is not None and not alone.too_long(task)

@@ -52,12 +52,14 @@ class TooNearError(InfeasibleError):
     Attributes:
         at_home: whether one of those that come too near first stands at its home.
         robots: names of those two.
+        short: metres by which they come too near.
     """
 
     def __init__(self, conflict: Conflict, least: float, homes: Mapping[str, Position]) -> None:
         super().__init__(_words(conflict, least, homes))
         self.at_home = conflict.at_home
         self.robots = frozenset((conflict.first, conflict.second))
+        self.short = least - conflict.distance
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,14 +4,16 @@ import re
 from dataclasses import replace
 
 import pytest
-from plain_scenes import road, robot, scene, task, visit, with_kinematics
+from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 
-CUTS = tuple(range(50, 5500, 50))
+CUTS = tuple(range(50, 1000, 50))
 USABLE = 0.8
-FOLDED = road(*((500.0 * (k % 2), 20.0 * (k // 2), 20.0) for k in range(12)), cuts=CUTS)
+FOLDED = road(
+    *((500.0 * (k % 2), 20.0 * (k // 2), 20.0) for k in range(12)), cuts=tuple(range(250, 5500, 250))
+)
 ERRANDS = {name: visit((300.0, 10.0 * k, 20.0), hold=30.0) for k, name in enumerate("abcd")}
 
 
@@ -65,7 +67,7 @@ def test_a_home_that_is_proposed_is_near_enough_and_two_metres_before_is_not():
 
 
 def test_batteries_that_can_be_charged_are_proposed_where_they_help():
-    whole = scene([with_kinematics(robot(), endurance=150.0, recharge=None)], {"a": FOLDED})
+    whole = scene([with_kinematics(robot(), endurance=120.0, recharge=None)], ERRANDS)
     assert "a rechargeTime for the batteries" in refusal(whole)
     assert plan(with_robots(whole, recharge=300.0))
 
@@ -82,7 +84,7 @@ def test_a_number_of_robots_that_is_proposed_is_enough_and_others_are_not():
         with_kinematics(robot(name, (east, 0.0, 0.0)), endurance=130.0)
         for name, east in (("west", 0.0), ("east", 1000.0))
     )
-    line = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS[:19])
+    line = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS)
     whole = scene([west, east], {"a": line}, tasks={"a": task("a", wanted=1)})
     assert "robotsWanted of 2 would do" in refusal(whole)
     assert plan(with_tasks(whole, wanted=2))
@@ -142,3 +144,30 @@ def test_deadlines_that_are_proposed_together_are_enough():
     tasks = tuple(replace(each, deadline=late.get(each.name, each.deadline)) for each in whole.tasks)
     assert plan(replace(whole, tasks=tasks))
     assert any("as the only task it would end after 42 s" in each for each in caught.value.reasons)
+
+
+def test_a_distance_between_robots_that_is_proposed_can_be_kept():
+    team = (robot("r1"), robot("r2", (50.0, 0.0, 0.0)))
+    whole = scene(team, {"a": {"r1": visit((50.0, 0.0, 4.0))}}, minimum_separation=6.0)
+    (least,) = re.findall(
+        r"short; waiting does not help; a minimumSeparation of ([\d.]+) m would do", refusal(whole)
+    )
+    assert plan(replace(whole, minimum_separation=float(least)))
+    refusal(replace(whole, minimum_separation=float(least) + 0.2))
+
+
+def test_an_area_that_is_to_be_opened_is_one_that_bars_the_path():
+    ring = [
+        box(name, west, south, east, north)
+        for name, west, south, east, north in (
+            ("north", -50, 30, 50, 40),
+            ("south", -50, -40, 50, -30),
+            ("west", -50, -40, -40, 40),
+            ("east", 40, -40, 50, 40),
+        )
+    ]
+    whole = scene([robot(home=(200.0, 0.0, 0.0))], {"a": visit((0.0, 0.0, 20.0))}, areas=ring)
+    found = refusal(whole)
+    assert found.startswith("task 'a' can be reached by no robot (r1: no path from")
+    assert plan(replace(whole, areas=tuple(ring[1:])))
+    assert found.endswith("for 'r1' a passage through 'north' or 'south' or 'west' or 'east' would do")
