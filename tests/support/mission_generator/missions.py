@@ -82,8 +82,14 @@ class Maker:
             transitAltitude=random.choice([30.0, 45.0]),
             positionError=random.choice([0.0, 0.5]),
             reserve=0.2,
+            minimumSeparation=self._separation(),
         )
         return Sample(self.seed, mission, context, types, self._witness())
+
+    def _separation(self) -> float | None:
+        """Return the metres that robots must keep apart, if any: less than homes are apart."""
+        random = Random(f"separation {self.seed}")
+        return random.choice([3.0, 5.0, 8.0]) if random.random() < 0.4 else None
 
     def _robots(self, count: int):
         discs = [(12.0 * k, -SIZE - 40.0, 6.0) for k in range(count)]

@@ -3,12 +3,13 @@
 import time
 from collections import defaultdict
 from dataclasses import dataclass, field
+from itertools import combinations
 from math import inf
 
 import numpy as np
 import shapely
 
-from mission_generator.missions import sample
+from mission_generator.missions import DRONE, sample
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import BEHAVIOUR
@@ -28,6 +29,7 @@ class Outcome:
     """What became of one mission.
 
     `refused` is why it was refused, empty if it was not. `complaints` are broken promises.
+    `separation` is the metres that its robots must keep apart, 0 if none are asked for.
     `coverage` is the share of each polygon task's target that was covered.
     """
 
@@ -38,12 +40,14 @@ class Outcome:
     coverage: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
     makespan: float = 0.0
+    separation: float = 0.0
 
 
 def outcome_of(seed, contributions, folder):
     """Return what becomes of the random mission of that seed; its files are written to the folder."""
     made = sample(seed, contributions.languages)
-    outcome = Outcome(seed, made.witness is not None)
+    apart = made.mission.minimumSeparation or 0.0
+    outcome = Outcome(seed, made.witness is not None, separation=apart)
     started = time.process_time()
     write_project(made, contributions.languages, folder)
     try:
@@ -84,6 +88,8 @@ def _carry_out(folder, contributions, outcome):
     outcome.makespan = run.ending.time
     outcome.complaints += list(_intrusions(scene, run.tracks))
     outcome.complaints += list(_overdrafts(scene, run.tracks))
+    outcome.complaints += list(_repetitions(scene, program))
+    outcome.complaints += list(_approaches(scene, run.tracks))
     outcome.coverage = dict(_coverage(scene, program))
     for task, share in outcome.coverage.items():
         if share < 0.999:
@@ -125,6 +131,26 @@ def _intrusions(scene, tracks):
                 yield f"track of '{name}' comes to {distances.min():.3f} m of '{area.name}', not {keep:.3f} m"
 
 
+def _approaches(scene, tracks):
+    """Yield where two robots come nearer to each other than the mission allows, at any time."""
+    if scene.minimum_separation is None:
+        return
+    times = np.unique([sample.time for track in tracks.values() for sample in track])
+    places = {}
+    for name, track in tracks.items():
+        own = np.array([(sample.time, sample.east, sample.north, sample.up) for sample in track])
+        places[name] = np.stack([np.interp(times, own[:, 0], own[:, axis]) for axis in (1, 2, 3)], axis=1)
+    for one, two in combinations(places, 2):
+        apart = places[two] - places[one]
+        step = np.diff(apart, axis=0)
+        squares = np.maximum((step**2).sum(axis=1), 1e-12)
+        share = np.clip(-(apart[:-1] * step).sum(axis=1) / squares, 0.0, 1.0)
+        nearest = np.linalg.norm(apart[:-1] + share[:, None] * step, axis=1).min(initial=inf)
+        least = scene.minimum_separation
+        if nearest < least - NEAR:
+            yield f"'{one}' and '{two}' come to {nearest:.3f} m of each other, not {least:g} m"
+
+
 def _overdrafts(scene, tracks):
     """Yield where a robot uses up some of the reserve that it must keep."""
     for name, track in tracks.items():
@@ -148,6 +174,27 @@ def _parts_between(points, low, high):
     begin = starts[kept, :2] + (ends - starts)[kept, :2] * enter[kept, None]
     end = starts[kept, :2] + (ends - starts)[kept, :2] * leave[kept, None]
     return shapely.linestrings(np.stack([begin, end], axis=1)) if kept.any() else np.array([])
+
+
+def _repetitions(scene, program):
+    """Yield what is done twice: a photo of a task at one place, or a task at a point by several robots."""
+    robots, photos, sorties = defaultdict(set), defaultdict(set), {}
+    for robot in program.robots:
+        sorties[robot.id] = sum(move.is_a((DRONE, "TakeOff")) for move in robot.moves)
+        for task in {move.task for move in robot.moves if move.task}:
+            robots[task].add(robot.id)
+        for task, at, *leg in _photos(robot):
+            photos[task].add((*np.round(at, 2), *leg))
+    for task in scene.tasks:
+        names = robots[task.name]
+        if "point" in task.part.attributes and len(names) != 1:
+            yield f"'{task.name}' is done by {len(names)} robots: {', '.join(sorted(names))}"
+        if "shell" in task.part.attributes:
+            places = [each[:3] for each in photos[task.name]]
+            twice = len(places) - len(set(places))
+            cuts = sum(sorties[name] for name in names)
+            if twice > cuts:  # where a swath is cut, its last photo is repeated
+                yield f"{twice} photos of '{task.name}' are made twice"
 
 
 def _coverage(scene, program):
@@ -185,6 +232,14 @@ def _target(scene, task, robots):
 
 def _footprints(scene, robot):
     """Yield the task and the ground rectangle of each photo, laid along the way the robot flies."""
+    for task, at, here, end in _photos(robot):
+        shape = _rectangle(scene.task(task).part.attributes, at, here, end)
+        if shape is not None:
+            yield task, shape
+
+
+def _photos(robot):
+    """Yield the task of each photo, where it is made, and the ends of the leg."""
     here, every = robot.home, 0.0
     for move in robot.moves:
         end = move.target.position if move.target and move.target.position else here
@@ -193,10 +248,7 @@ def _footprints(scene, robot):
         photos += _each(every, here, end)
         photos += [end for action in move.after if _photographs(action)]
         every = _distance(move.after, every)
-        for at in photos:
-            shape = _rectangle(scene.task(move.task).part.attributes, at, here, end)
-            if shape is not None:
-                yield move.task, shape
+        yield from ((move.task, at, here, end) for at in photos)
         here = end
 
 
