@@ -1,12 +1,15 @@
 """Typed stubs of urn:mmrs:mission:1.0, made by "mmrs metamodel stubs"; not to be edited."""
 
 from collections.abc import Iterable
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 from mmrs_core.languages import robot
 from mmrs_core.languages.element import Element
 
 NS_URI: Final[str]
+
+StartCorner: TypeAlias = Literal["NEAREST", "NORTH_WEST", "NORTH_EAST", "SOUTH_EAST", "SOUTH_WEST"]
+"""Where the first swath of an area begins."""
 
 class NamedElement(Element):
     """An element that may have a name."""
@@ -146,7 +149,7 @@ class RelativeCoordinate(Coordinate):
     ) -> None: ...
 
 class Task(NamedElement):
-    """A task. New task types extend PointTask, LineTask, PolygonTask or this class."""
+    """A task. New task types extend PointTask, LineTask, PolygonTask, SweepTask or this class."""
     robotsWanted: int | None
     """Number of robots that share the task; absent: as many as shorten the mission."""
     requiredDevices: list[str]
@@ -235,6 +238,39 @@ class PolygonTask(Task):
         initialPosition: Coordinate | None = ...,
         shell: Iterable[Coordinate] | None = ...,
         holes: Iterable[Ring] | None = ...,
+    ) -> None: ...
+
+class SweepTask(PolygonTask):
+    """A task that covers an area in parallel swaths."""
+    swathAngle: float | None
+    """Direction of the swaths, in degrees clockwise from north; absent: the one that is flown soonest."""
+    crossHatch: bool
+    """Whether the area is covered a second time, across the first swaths."""
+    startCorner: StartCorner
+    """Corner of the area at which the first swath begins."""
+    turnaroundDistance: float
+    """Distance by which each swath is extended beyond both ends, in metres; less where an area is in the way."""
+    alternateSwaths: bool
+    """Whether every other swath is skipped, and covered on the return, for robots with wide turns."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        robotsWanted: int | None = ...,
+        requiredDevices: Iterable[str] | None = ...,
+        requiredActions: Iterable[str] | None = ...,
+        earliestStart: float | None = ...,
+        deadline: float | None = ...,
+        maxDuration: float | None = ...,
+        priority: int | None = ...,
+        initialPosition: Coordinate | None = ...,
+        shell: Iterable[Coordinate] | None = ...,
+        holes: Iterable[Ring] | None = ...,
+        swathAngle: float | None = ...,
+        crossHatch: bool | None = ...,
+        startCorner: StartCorner | None = ...,
+        turnaroundDistance: float | None = ...,
+        alternateSwaths: bool | None = ...,
     ) -> None: ...
 
 class Ring(Element):

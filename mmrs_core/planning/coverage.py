@@ -6,7 +6,7 @@ The entry point for rules is `work_over`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import pairwise
 from math import floor
@@ -23,9 +23,22 @@ from mmrs_core.planning.footprints import GRID
 from mmrs_core.planning.in_passing import trigger_distance
 from mmrs_core.planning.limits import MOST
 from mmrs_core.planning.lines import APART, Swath
+from mmrs_core.planning.patterns import Pattern, layers_of
 from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.planning.swaths import swaths
-from mmrs_core.scene import ActionAt, Area, Coverage, Point, Repetition, Ring, Robot, Scene, Stroke, Work
+from mmrs_core.planning.turnarounds import turned_around
+from mmrs_core.scene import (
+    ActionAt,
+    Area,
+    Coverage,
+    Point,
+    Repetition,
+    Ring,
+    Robot,
+    Scene,
+    Stroke,
+    Work,
+)
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
@@ -54,9 +67,9 @@ class Sweep:
         parameters: of the action.
         speed: largest speed on the strokes, metres per second; None: see `Stroke`.
         slow_down: see `Stroke`.
-        angle: direction of the strokes, radians from east to north; None: the best one.
         passing: name of the device's action that does the same in passing; None: the robot stops for each.
         start: where the first stroke should be near, such as the task's initial position; None: anywhere.
+        pattern: in which the strokes are laid and ordered.
     """
 
     altitude: float
@@ -68,9 +81,9 @@ class Sweep:
     parameters: tuple[tuple[str, str], ...] = ()
     speed: float | None = None
     slow_down: float | None = None
-    angle: float | None = None
     passing: str | None = None
     start: Point | None = None
+    pattern: Pattern = field(default_factory=Pattern)
 
     @property
     def along(self) -> float:
@@ -114,9 +127,14 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
         raise InfeasibleError(
             f"takes about {wanted:,.0f} photos or samples, of which {MOST:,} can be planned"
         )
-    closed = _closed(scene, robot, sweep.altitude)
+    closed = closed_at(scene, robot, sweep.altitude)
     worth = shapely.to_wkb(GeometryCollection(_worth(target, closed)))
-    lines = _lines(worth, shapely.to_wkb(closed), width, sweep.along, sweep.angle, sweep.start)
+    shut = shapely.to_wkb(closed)
+    layers = layers_of(
+        sweep.pattern,
+        sweep.start,
+        lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start),
+    )
     covered = Coverage(
         shell=tuple(shell),
         holes=tuple(tuple(hole) for hole in holes),
@@ -124,8 +142,14 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
         width=width,
         length=sweep.along,
     )
-    strokes = tuple(stroke for line in lines for stroke in _strokes(line, sweep))
-    return Work(strokes=strokes, divisible=True, rule=sweep.rule, ordered=False, coverage=covered)
+    strokes = (
+        replace(stroke, part="across" if layer else "")
+        for layer, lines in enumerate(layers)
+        for line in lines
+        for stroke in _strokes(line, sweep)
+    )
+    extended = turned_around(strokes, sweep.pattern.turnaround, closed)
+    return Work(strokes=tuple(extended), divisible=True, rule=sweep.rule, ordered=False, coverage=covered)
 
 
 def target_of(
@@ -161,7 +185,8 @@ def _union(holes: Sequence[Ring]) -> shapely.Geometry:
     return shapely.union_all([polygon(hole) for hole in holes], grid_size=GRID)
 
 
-def _closed(scene: Scene, robot: Robot, altitude: float) -> BaseGeometry:
+def closed_at(scene: Scene, robot: Robot, altitude: float) -> BaseGeometry:
+    """Return what a robot keeps from at a height, as one shape."""
     return shapely.union_all(grown_areas(scene, robot, altitude), grid_size=GRID)
 
 

@@ -118,7 +118,8 @@ class Remainders:
             found: list[list[int]] = [[] for _ in self.parts[sort]]
             near = shapely.STRtree(self._ground_of(other)).query(self._ground_of(sort), "intersects")
             for part, each in near.T.tolist():
-                found[part].append(each)
+                if self.parts[sort][part].part == self.parts[other][each].part:
+                    found[part].append(each)
             self._under[sort, other] = found
         return self._under[sort, other]
 

@@ -26,7 +26,7 @@ _GAP = 1.5
 _ROUNDING = 1e-6
 """Strips by which polygons may reach beyond whole ones, as turned and overlaid rings are rounded."""
 
-_SHAVED = 5e-4
+SHAVED = 5e-4
 """Metres that what is closed is shrunk by before it is asked whether a line is clear of it: less than
 clearances are rounded up by, and enough for lines along its edge."""
 
@@ -55,7 +55,7 @@ def swaths_along_x(
             the lowest begins this share (0 to 1) of the excess below the pieces.
     """
     blocked = Polygon() if closed is None else closed
-    core = shapely.buffer(blocked, -_SHAVED)
+    core = shapely.buffer(blocked, -SHAVED)
     shapely.prepare(core)
 
     def clear(one: Place, two: Place) -> bool:

@@ -12,7 +12,7 @@ from mmrs_core.scene.timing import acting
 
 _SAME = 1e-9
 
-_OF_A_WHOLE = ("look", "speed", "slow_down", "reversible", "repetition")
+_OF_A_WHOLE = ("look", "speed", "slow_down", "reversible")
 """What the parts of a stroke have in common."""
 
 NEAR = 1e-6
@@ -162,6 +162,8 @@ def between(stroke: Stroke, begin: float, end: float) -> Stroke:
         for action in stroke.actions
         if (action.at >= begin - _SAME or begin <= 0.0) and (action.at < end - _SAME or to_the_end)
     )
+    each = stroke.repetition
+    left = max(0.0, whole - end)
     return replace(
         stroke,
         points=_points_between(stroke.points, begin, min(end, whole)),
@@ -169,6 +171,8 @@ def between(stroke: Stroke, begin: float, end: float) -> Stroke:
         cuts=tuple(cut - begin for cut in stroke.cuts if begin < cut < end),
         hold=stroke.hold if to_the_end else 0.0,
         object=stroke.object if to_the_end else None,
+        repetition=each
+        and replace(each, before=max(0.0, each.before - begin), after=max(0.0, each.after - left)),
     )
 
 
@@ -206,9 +210,10 @@ def can_turn(stroke: Stroke) -> bool:
 
 def turned(stroke: Stroke) -> Stroke:
     """Return the stroke from its last point to its first."""
-    whole = length_of(stroke.points)
+    whole, each = length_of(stroke.points), stroke.repetition
     return replace(
         stroke,
+        repetition=each and replace(each, before=each.after, after=each.before),
         points=stroke.points[::-1],
         actions=tuple(replace(action, at=whole - action.at) for action in reversed(stroke.actions)),
         cuts=tuple(whole - cut for cut in reversed(stroke.cuts)),
@@ -231,6 +236,11 @@ def continues(one: Stroke, two: Stroke) -> bool:
     """Return whether one stroke continues another, so that both may be one."""
     plain = one.hold == 0.0 and one.object is None
     alike = all(getattr(one, name) == getattr(two, name) for name in _OF_A_WHOLE)
+    a, b = one.repetition, two.repetition
+    if a is not None and b is not None:
+        alike = alike and a.after == b.before == 0.0 and a == replace(b, before=a.before, after=a.after)
+    else:
+        alike = alike and a is b
     return plain and alike and one.points[-1] == two.points[0] and len(one.points) > 1 < len(two.points)
 
 
@@ -238,9 +248,11 @@ def _put_together(one: Stroke, two: Stroke) -> Stroke:
     done = length_of(one.points)
     bend = _is_bend(one.points[-2], one.points[-1], two.points[1])
     points = (*one.points, *two.points[1:]) if bend else (*one.points[:-1], *two.points[1:])
+    each = two.repetition
     return replace(
         two,
         points=points,
+        repetition=each and replace(each, before=one.repetition.before if one.repetition else 0.0),
         actions=(*one.actions, *(replace(action, at=action.at + done) for action in two.actions)),
         cuts=(*one.cuts, done, *(cut + done for cut in two.cuts)),
     )

@@ -33,23 +33,26 @@ metres; 0 ends this, with a last time."""
 
 @dataclass(frozen=True, slots=True)
 class Repetition:
-    """A device action that is repeated along a whole stroke, which the robot moves along without a stop.
+    """A device action that is repeated along a stroke, which the robot moves along without a stop.
 
-    It is done at the stroke's first point, after each `every` metres, and at its last point.
+    It is done where it begins, after each `every` metres, and where it ends.
 
     Attributes:
         every: metres.
         action: that takes the parameter ``distance``.
         device: identifier of the device.
+        before: metres of the stroke before it begins. after: those after it has ended.
     """
 
     every: float
     action: str
     device: str
+    before: float = 0.0
+    after: float = 0.0
 
     def times(self, length: float) -> int:
-        """Return how often it is done along a length, metres."""
-        return ceil(length / self.every - 1e-6) + 1
+        """Return how often it is done along a stroke of a length, metres."""
+        return ceil((length - self.before - self.after) / self.every - 1e-6) + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +71,7 @@ class Stroke:
     Attributes:
         points: (east, north, up), at least one; consecutive points are joined by straight lines.
         actions: ordered by arc length; the robot stops for each.
-        repetition: what is done along all of it without a stop; None: nothing.
+        repetition: what is done along it without a stop; None: nothing.
         look: orientation during the stroke and while holding; None: the direction of travel.
         speed: largest speed on it, metres per second; None: the robot's cruise.
         slow_down: factor on the robot's cruise speed, 0 to 1; None: 1. QUICK work has speed=inf.
@@ -109,8 +112,8 @@ class Stroke:
         if self.repetition is None:
             return self.actions
         each = self.repetition
-        begin = ActionAt(0.0, each.action, each.device, ((DISTANCE, f"{each.every:.3f}"),))
-        end = ActionAt(self.length, each.action, each.device, ((DISTANCE, "0"),))
+        begin = ActionAt(each.before, each.action, each.device, ((DISTANCE, f"{each.every:.3f}"),))
+        end = ActionAt(self.length - each.after, each.action, each.device, ((DISTANCE, "0"),))
         return (begin, *self.actions, end)
 
     @property
@@ -119,9 +122,9 @@ class Stroke:
         own = tuple(action.at for action in self.actions)
         if self.repetition is None:
             return own
-        length, every = self.length, self.repetition.every
-        repeated = (index * every for index in range(self.repetition.times(length) - 1))
-        return tuple(sorted((*own, *repeated, length)))
+        length, each = self.length, self.repetition
+        repeated = (each.before + index * each.every for index in range(each.times(length) - 1))
+        return tuple(sorted((*own, *repeated, length - each.after)))
 
 
 @dataclass(frozen=True, slots=True)

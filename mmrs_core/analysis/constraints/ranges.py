@@ -114,6 +114,13 @@ CONSTRAINTS = (
         "leave robotsWanted out to let as many robots share the task as help",
     ),
     Constraint(
+        "MML056",
+        "The turnaround distance of a task is not negative.",
+        (MISSION, "SweepTask"),
+        _at_least_zero("turnaroundDistance"),
+        "give the distance in metres beyond the area's border, or leave it out",
+    ),
+    Constraint(
         "CTX005",
         "The safety distance of an area is not negative.",
         (CONTEXT, "Area"),

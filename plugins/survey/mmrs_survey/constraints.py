@@ -50,7 +50,7 @@ CONSTRAINTS = (
     Constraint(
         "SUR003",
         "Overlaps are from 0 to below 1",
-        names.PHOTO_GRID_TASK,
+        names.PHOTO_TASK,
         overlap_outside,
         "write 0.8 for an overlap of 80 per cent",
     ),
@@ -71,7 +71,7 @@ CONSTRAINTS = (
     Constraint(
         "SUR006",
         "What one photo covers is said once",
-        names.PHOTO_GRID_TASK,
+        names.PHOTO_TASK,
         footprint_twice,
         "keep the footprint or the ground resolution",
     ),
@@ -86,7 +86,7 @@ CONSTRAINTS = (
     Constraint(
         "SUR008",
         "A ground resolution goes with a camera whose image size is known",
-        names.PHOTO_GRID_TASK,
+        names.PHOTO_TASK,
         resolution_unfounded,
         "add the properties image.width and image.height, in pixels, to the camera",
     ),
@@ -175,7 +175,7 @@ CONSTRAINTS = (
     Constraint(
         "SUR020",
         "A ground resolution is given in metres per pixel",
-        names.PHOTO_GRID_TASK,
+        names.PHOTO_TASK,
         resolution_coarse,
         "write 0.02 for 2 cm per pixel",
         Severity.WARNING,

@@ -14,6 +14,9 @@ from mmrs_core.planning.devices import figure
 from mmrs_survey.camera import CAMERA_KEYS
 from mmrs_survey.names import SURVEY
 
+SPACED = ("photoDistance", "footprintLength", "groundResolution")
+"""What makes a task along a line take photos."""
+
 
 def devices_for(models: ModelSet, action: str, device_id: str) -> list[Element]:
     """Return the devices of all robot types that support an action, or of those the one named.
@@ -87,7 +90,7 @@ def _action_asked(task: Element) -> str:
     if not _is_survey(task):
         return ""
     is_road = any(name == "RoadTask" for _, name in metaclass_of(task).ancestry)
-    without_photos = is_road and number(task, "photoDistance") is None
+    without_photos = is_road and all(number(task, name) is None for name in SPACED)
     return "" if without_photos else text(task, "actionName")
 
 

@@ -8,12 +8,13 @@ from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
+from mmrs_core.planning.patterns import pattern_of
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
-from mmrs_core.scene import Device, Part, Robot, Scene, Task, Work
+from mmrs_core.scene import Robot, Scene, Task, Work
 from mmrs_core.scene.attributes import holes, number, position, ring, text
-from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of
 from mmrs_survey.names import PHOTO_GRID_TASK
 from mmrs_survey.passing import trigger_of
+from mmrs_survey.spacing import spacing_of
 
 RULE = "photo_grid"
 
@@ -48,44 +49,11 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
             slow_down=None if speed is None else 1.0,
             passing=None if trigger is None else trigger.action,
             start=(entry[0], entry[1]),
+            pattern=pattern_of(part),
         ),
         holes(part),
     )
     return replace(work, entry=entry)
-
-
-def spacing_of(part: Part, device: Device, altitude: float) -> Footprint:
-    """Return how far apart swaths, and photos along them, may be: footprints less their overlaps.
-
-    The ground is taken to be level at the height of the origin.
-
-    Raises:
-        InfeasibleError: neither the task nor the device defines what one photo covers, or the camera is
-            too coarse.
-    """
-    grid = number(part, "gridResolution")
-    seen = Footprint(grid, grid) if grid is not None else _footprint(part, device, altitude)
-    side, front = number(part, "sideOverlap") or 0.0, number(part, "frontOverlap") or 0.0
-    left = Footprint(seen.width * (1.0 - side), seen.length * (1.0 - front)) if grid is None else seen
-    if not (left.width > 0.0 and left.length > 0.0):
-        raise InfeasibleError("grid, footprint and overlaps leave no distance between photos")
-    return left
-
-
-def _footprint(part: Part, device: Device, altitude: float) -> Footprint:
-    width, length = number(part, "footprintWidth"), number(part, "footprintLength")
-    if width is not None and length is not None:
-        return Footprint(width, length)
-    resolution = number(part, "groundResolution")
-    if resolution is not None:
-        return footprint_of(device.properties, altitude, resolution, device.id)
-    if altitude <= 0.0:
-        raise InfeasibleError(f"what one photo covers is not known at {altitude:g} m: give a footprint")
-    seen = footprint_at(device.properties, altitude)
-    if seen is None:
-        keys = ", ".join(CAMERA_KEYS[:3])
-        raise InfeasibleError(f"device '{device.id}' does not state what one photo covers ({keys})")
-    return seen
 
 
 PHOTO_GRID_RULE = Rule(RULE, PHOTO_GRID_TASK, photo_grid_work)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 SURVEY = "urn:mmrs:survey:1.0"
+PHOTO_TASK = (SURVEY, "PhotoTask")
 PHOTO_GRID_TASK = (SURVEY, "PhotoGridTask")
 GO_TO_TASK = (SURVEY, "GoToTask")
 ROAD_TASK = (SURVEY, "RoadTask")

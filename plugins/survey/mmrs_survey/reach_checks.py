@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import inf
 
 from mmrs_core.analysis.constraints.blocked import BlockedLine, blocked_line
 from mmrs_core.analysis.constraints.clearances import (
@@ -85,7 +86,8 @@ def _passes(task: Element, points: Sequence[Position]) -> tuple[tuple[Position, 
     """Return the passes of a road; none where it has but one, which is its line, or cannot be divided."""
     line = without_repeats(points[::-1] if value(task, "inverted") is True else points)
     try:
-        found = lines_over(line, number(task, "width"), number(task, "footprintWidth"))
+        strip = (number(task, "footprintWidth") or inf) * (1.0 - (number(task, "sideOverlap") or 0.0))
+        found = lines_over(line, number(task, "width"), strip)
     except InfeasibleError:
         return ()
     return found if len(found) > 1 else ()

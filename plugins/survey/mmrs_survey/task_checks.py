@@ -11,20 +11,14 @@ from mmrs_core.languages.modelset import ModelSet
 from mmrs_survey import names
 
 ABOVE_ZERO = {
-    names.PHOTO_GRID_TASK: (
-        "gridResolution",
-        "footprintWidth",
-        "footprintLength",
-        "groundResolution",
-        "speed",
-        "blur",
-    ),
-    names.ROAD_TASK: ("footprintWidth", "photoDistance", "blur"),
+    names.PHOTO_TASK: ("footprintWidth", "footprintLength", "groundResolution", "speed", "blur"),
+    names.PHOTO_GRID_TASK: ("gridResolution",),
+    names.ROAD_TASK: ("photoDistance",),
     names.OBSERVE_TASK: ("duration",),
     names.MEASURE_TASK: ("spacing",),
 }
 NOT_NEGATIVE = {
-    names.ROAD_TASK: ("width",),
+    names.ROAD_TASK: ("width", "turnaroundDistance"),
     names.OBSERVE_TASK: ("distance",),
     names.MEASURE_TASK: ("depth",),
     names.APPROACH_TASK: ("distance", "tolerance"),

@@ -69,6 +69,18 @@ def test_a_wide_corridor_takes_parallel_passes_to_and_fro(robot, scene, task):
     ]
 
 
+def test_overlaps_set_passes_and_photos_and_passes_turn_around_beyond_the_corridor(robot, scene, task):
+    straight = {"points": ((0.0, 0.0, 0.0), (100.0, 0.0, 0.0)), "width": 40.0, "turnaroundDistance": 12.0}
+    seen = {"footprintWidth": 40.0, "footprintLength": 30.0, "sideOverlap": 0.5, "frontOverlap": 0.6}
+    strokes = road_work(road(task, **straight, **seen), robot(), scene()).strokes
+    assert [[round(east) for east, *_ in stroke.points] for stroke in strokes] == [
+        [-12, 0, 100, 112],
+        [112, 100, 0, -12],
+    ]
+    assert [stroke.points[0][1] for stroke in strokes] == [-10.0, 10.0]
+    assert strokes[0].spots == pytest.approx((12, 24, 36, 48, 60, 72, 84, 96, 108, 112))
+
+
 def test_a_corridor_that_is_seen_at_once_takes_one_pass(robot, scene, task):
     assert len(road_work(road(task, width=30.0), robot(), scene()).strokes) == 1
 

@@ -8,6 +8,7 @@ import shapely
 
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts
+from mmrs_core.planning.patterns import Pattern, layers_of
 from mmrs_core.planning.swaths import swaths
 
 
@@ -76,12 +77,36 @@ def check(seed):
         assert (np.hypot(*np.diff(line.points, axis=0).T) >= 0.01).all()
 
 
+def check_pattern(seed):
+    pieces, closed, width, length = target(seed)
+    if not pieces:
+        return
+    rng = np.random.default_rng(seed)
+    corner = tuple(rng.choice([-1.0, 1.0], 2))
+    pattern = Pattern(rng.uniform(0.0, np.pi), cross_hatch=True, corner=corner, alternate=bool(seed % 2))
+    layers = layers_of(
+        pattern,
+        None,
+        lambda angle, start: swaths(pieces, width, length=length, closed=closed, angle=angle, start=start),
+    )
+    assert len(layers) == 2
+    for lines in layers:
+        assert share(pieces, (each for line in lines for each in tiles(line, width, length))) >= 0.9999
+    ends = np.array([line.points[[0, -1]] for line in layers[0]])
+    assert layers[0][0].points[0] @ np.array(corner) == pytest.approx((ends @ np.array(corner)).max())
+
+
 @pytest.mark.parametrize("seed", range(2))
 def test_a_random_target_is_covered_clear_of_what_is_closed(seed):
     check(seed)
+
+
+def test_a_random_target_is_covered_by_each_layer_of_a_pattern():
+    check_pattern(6)
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", [2, 3, *range(14, 440)])
 def test_many_random_targets_are_covered_clear_of_what_is_closed(seed):
     check(seed)
+    check_pattern(seed)

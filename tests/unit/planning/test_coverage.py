@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import inf
 
 import pytest
@@ -6,6 +7,7 @@ import shapely
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, target_of, work_over
 from mmrs_core.planning.omissions import uncovered
+from mmrs_core.planning.patterns import Pattern
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Robot, RobotType, Scene
 
 SQUARE = ((0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0))
@@ -155,8 +157,28 @@ def test_a_width_that_is_not_positive_is_a_mistake(width):
 
 
 def test_the_direction_can_be_given():
-    work = work_over(scene(), robot(), SQUARE, Sweep(altitude=9.0, width=20.0, rule="test", angle=0.0))
+    sweep = Sweep(altitude=9.0, width=20.0, rule="test", pattern=Pattern(angle=0.0))
+    work = work_over(scene(), robot(), SQUARE, sweep)
     assert all(abs(s.points[0][1] - s.points[-1][1]) < 1e-9 for s in work.strokes)
+
+
+def test_swaths_are_extended_as_far_as_it_is_clear_and_crossed():
+    sweep = Sweep(9.0, 20.0, "test", length=10.0, action="photo", passing="trigger")
+    pattern = Pattern(0.0, cross_hatch=True, corner=(1.0, 1.0), turnaround=15.0, alternate=True)
+    wall = box((110.0, -50.0), (120.0, 150.0), safety=0.0)
+    plain = work_over(scene(wall), robot(), SQUARE, sweep).strokes
+    work = work_over(scene(wall), robot(), SQUARE, replace(sweep, pattern=pattern))
+    first, *_ = along = [stroke for stroke in work.strokes if not stroke.part]
+    assert [tuple(map(round, each)) for each in first.points] == [
+        (109, 90, 9),
+        (95, 90, 9),
+        (5, 90, 9),
+        (-10, 90, 9),
+    ]
+    assert [round(stroke.points[0][1]) for stroke in along] == [90, 50, 10, 30, 70]
+    assert (first.spots[0], first.length - first.spots[-1]) == pytest.approx((14.0, 15.0), abs=0.01)
+    assert sum(map(len, (stroke.spots for stroke in work.strokes))) == 2 * sum(len(s.spots) for s in plain)
+    assert {abs(s.points[0][1] - s.points[-1][1]) for s in work.strokes if s.part} == {120.0}
 
 
 def test_the_first_stroke_is_near_the_start():

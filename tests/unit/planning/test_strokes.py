@@ -128,6 +128,14 @@ def test_every_part_of_a_stroke_repeats_on_its_own():
     assert joined(parts_of(PASSING)) == (PASSING,)
 
 
+def test_nothing_is_repeated_where_a_stroke_turns_around():
+    stroke = replace(PASSING, repetition=replace(PASSING.repetition, before=10.0, after=20.0))
+    assert stroke.spots == (10.0, 40.0, 70.0, 80.0)
+    assert turned(stroke).spots == (20.0, 50.0, 80.0, 90.0)
+    assert [part.spots for part in parts_of(stroke)] == [(10.0, 40.0, 45.0), (0.0, 30.0, 35.0)]
+    assert joined(parts_of(stroke)) == (stroke,)
+
+
 def test_a_robot_that_acts_in_passing_does_not_stop_on_the_way():
     stops = replace(PASSING, repetition=None, actions=tuple(photo(at) for at in PASSING.spots))
     assert serve_seconds(PASSING, robot(), DRONE) == pytest.approx(10.0)

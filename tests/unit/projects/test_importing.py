@@ -146,7 +146,7 @@ def test_a_choice_sets_attributes_of_any_installed_type_and_the_last_that_fits_c
     result = made(meadow, pit, drawn("gate", (20, 0)), options=options)
     assert [each.became for each in result.outcomes] == ["PhotoGridTask", "Terrain", "GoToTask", "home"]
     text = result.files[Path("farm/mission.xmi")].decode()
-    assert 'altitude="25.0" gridResolution="5.0" frontOverlap="0.7"' in text
+    assert 'frontOverlap="0.7" sideOverlap="0.6" altitude="25.0" gridResolution="5.0"' in text
     assert 'slope="12.0"' in result.files[Path("farm/context.xmi")].decode()
 
 

@@ -110,6 +110,7 @@ RULE = "depth_hold_survey"
 def survey_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return parallel lines at one depth whose swaths cover the area."""
     from mmrs_core.planning.coverage import Sweep, work_over  # validating needs no planner
+    from mmrs_core.planning.patterns import pattern_of
 
     part = task.part
     depth, overlap = number(part, "depth"), number(part, "overlap") or 0.0
@@ -122,7 +123,7 @@ def survey_work(task: Task, robot: Robot, scene: Scene) -> Work:
     entry = (initial[0], initial[1], up)
     refuse_heights(robot, (entry,))
     refuse_blocked(robot, scene, (entry,), "the initial position")
-    sweep = Sweep(altitude=up, width=width, rule=RULE, start=(entry[0], entry[1]))
+    sweep = Sweep(altitude=up, width=width, rule=RULE, start=(entry[0], entry[1]), pattern=pattern_of(part))
     work = work_over(scene, robot, ring(part, "shell"), sweep, holes(part))
     return replace(work, strokes=tuple(recorded(part, robot, each) for each in work.strokes), entry=entry)
 

@@ -68,7 +68,7 @@ def test_a_plan_becomes_areas_paths_fences_and_points():
         [400.0],
     )
     assert (area.role, area.rings[0].tolist()) == (Role.SURVEY, FIELD)
-    assert (area.properties["angle"], area.properties["sideOverlap"]) == (30, 0.6)
+    assert (area.properties["swathAngle"], area.properties["sideOverlap"]) == (30, 0.6)
     assert (corridor.role, corridor.geometry, corridor.properties["width"]) == (
         Role.CORRIDOR,
         Geometry.LINE,
@@ -82,6 +82,23 @@ def test_a_plan_becomes_areas_paths_fences_and_points():
     )
     assert (fence.role, circle.role, circle.radius) == (Role.FORBIDDEN, Role.INCLUSION, 200.5)
     assert (rally.role, rally.reference) == (Role.RALLY_POINT, HeightReference.HOME)
+
+
+@pytest.mark.parametrize(
+    ("settings", "attributes"),
+    [
+        ({"entryLocation": 0, "Refly90Degrees": True}, {"startCorner": "NORTH_WEST", "crossHatch": True}),
+        ({"entryLocation": 0, "angle": 80}, {"startCorner": "NORTH_EAST", "swathAngle": 80}),
+        ({"entryLocation": 3, "angle": 170}, {"startCorner": "SOUTH_EAST", "swathAngle": 170}),
+        ({"flyAlternateTransects": False, "HoverAndCapture": True}, {"capture": "AT_STOPS"}),
+        ({"EntryPoint": 3, "TurnAroundDistance": 9}, {"inverted": True, "turnaroundDistance": 9}),
+        ({"EntryPoint": 1, "entryLocation": "top"}, {}),
+    ],
+)
+def test_settings_of_a_survey_become_attributes(settings, attributes):
+    transects = {"TransectStyleComplexItem": {"angle": 0, **settings}}
+    _, area = read_plan(plan({**survey("survey", polygon=FIELD), **transects}), "a.plan").features
+    assert area.properties == {"swathAngle": 0, **attributes}
 
 
 def test_items_that_are_no_shape_are_left_out():

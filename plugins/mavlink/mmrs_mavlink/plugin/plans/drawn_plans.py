@@ -21,8 +21,21 @@ SETTINGS = {
     "FrontalOverlap": ("frontOverlap", 0.01),
     "SideOverlap": ("sideOverlap", 0.01),
     "CorridorWidth": ("width", 1.0),
+    "TurnAroundDistance": ("turnaroundDistance", 1.0),
+    "angle": ("swathAngle", 1.0),
 }
 """The attribute that a setting is, and what it is multiplied by."""
+FLAGS: Mapping[str, tuple[str, Property]] = {
+    "Refly90Degrees": ("crossHatch", True),
+    "flyAlternateTransects": ("alternateSwaths", True),
+    "HoverAndCapture": ("capture", "AT_STOPS"),
+}
+"""The attribute that a setting is where it is on, and its value."""
+ENTRY, ENTRIES = "entryLocation", (315.0, 45.0, 225.0, 135.0)
+"""At which corner a survey begins: degrees from north, turned with its transects."""
+CORNERS = ("NORTH_EAST", "SOUTH_EAST", "SOUTH_WEST", "NORTH_WEST")
+CORRIDOR_ENTRY, AT_LAST_POINT = "EntryPoint", (2, 3)
+"""Where a corridor begins, and that this is at its last point."""
 ABOVE_SEA = 2
 """``DistanceMode`` of a height above mean sea level; 1 is above home, 3 and 4 are above the ground."""
 COMPLEX = {
@@ -31,7 +44,7 @@ COMPLEX = {
     "StructureScan": (Geometry.AREA, Role.STRUCTURE, "polygon"),
 }
 SHAPES = ("polygon", "polyline", "TransectStyleComplexItem", "type", "complexItemType", "CameraCalc")
-TAKEN = {*SETTINGS, "DistanceMode", "DistanceToSurfaceRelative", "version"}
+TAKEN = {*SETTINGS, *FLAGS, CORRIDOR_ENTRY, ENTRY, "DistanceMode", "DistanceToSurfaceRelative", "version"}
 OURSELVES = "MMRS"
 """The ground station of plans that MMRS writes."""
 MAIN = {"fileType", "version", "groundStation", "mission", "geoFence", "rallyPoints"}
@@ -183,7 +196,17 @@ def _flat(item: Mapping[str, object]) -> Iterator[tuple[str, object]]:
 def _attributes(settings: Mapping[str, Property]) -> dict[str, Property]:
     """Return settings of a survey or corridor as attributes of tasks, in SI units and fractions."""
     numbers = {key: value for key in SETTINGS if isinstance(value := settings.get(key), int | float)}
-    return {SETTINGS[key][0]: round(value * SETTINGS[key][1], 6) for key, value in numbers.items()}
+    found: dict[str, Property] = {
+        SETTINGS[key][0]: round(value * SETTINGS[key][1], 6) for key, value in numbers.items()
+    }
+    found |= dict(FLAGS[key] for key in FLAGS if settings.get(key) is True)
+    if settings.get(CORRIDOR_ENTRY) in AT_LAST_POINT:
+        found["inverted"] = True
+    entry, angle = settings.get(ENTRY), found.get("swathAngle", 0.0)
+    if isinstance(entry, int) and 0 <= entry < len(ENTRIES) and isinstance(angle, int | float):
+        turned = angle - 180.0 * round(angle / 180.0) if abs(angle) > 90.0 else angle
+        found["startCorner"] = CORNERS[int((ENTRIES[entry] + turned) % 360.0 // 90.0)]
+    return found
 
 
 def _above_sea(settings: Mapping[str, Property]) -> bool:
