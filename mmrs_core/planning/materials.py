@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf
+from math import ceil, floor, inf
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.pacing import paced
@@ -245,8 +245,8 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
         yield _why_unreachable(material, pilot, worst)
     elif short[worst] > 1e-9:
         yield (
-            f"{_words(material, worst)} takes {pilot.limit + short[worst]:.0f} s there and back; one"
-            f" charge allows {pilot.limit:.0f} s: {short[worst]:.0f} s short"
+            f"{_words(material, worst)} takes {ceil(pilot.limit + short[worst])} s there and back; one"
+            f" charge allows {floor(pilot.limit)} s: {ceil(short[worst])} s short"
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from math import dist, inf, isfinite
+from math import ceil, dist, inf, isfinite
 
 from mmrs_core.contributions.rules import (
     ElementKind,
@@ -157,7 +157,7 @@ def out_of_reach(work: Work, robot: Robot) -> str | None:
     farthest = max((dist(place, robot.home) for place in places), default=0.0)
     if farthest <= reach:
         return None
-    return f"would be {farthest:.0f} m from home, its radio reaches {reach:g} m"
+    return f"would be {ceil(farthest)} m from home, its radio reaches {reach:g} m"
 
 
 def _number(value: Value, absent: float) -> float:

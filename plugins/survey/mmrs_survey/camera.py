@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import floor
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import figure
@@ -74,8 +75,9 @@ def footprint_of(properties: Mapping[str, str], distance: float, resolution: flo
         across, along = (each or 0.0 for each in pixels)
         return Footprint(resolution * across, resolution * along)
     if reached > resolution * (1 + 1e-9):
+        near = floor(100.0 * distance * resolution / reached) / 100.0
         raise InfeasibleError(
             f"device '{device}' resolves {reached:.4g} m on the ground from {distance:g} m, "
-            f"{resolution:.4g} m is asked for"
+            f"{resolution:.4g} m is asked for: {near:g} m would do"
         )
     return seen

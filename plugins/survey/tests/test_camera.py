@@ -32,9 +32,12 @@ def test_a_camera_that_is_finer_than_asked_for_sees_less_than_its_pixels_would_a
 
 def test_a_camera_that_is_too_coarse_is_refused_with_what_it_reaches():
     with pytest.raises(
-        InfeasibleError, match=r"resolves 0\.02 m on the ground from 80 m, 0\.01 m is asked for"
+        InfeasibleError, match=r"resolves 0\.02 m on the ground from 80 m, 0\.01 m is asked for: 40 m would"
     ):
         footprint_of({**OPTICS, **PIXELS}, 80.0, 0.01, "camera")
+    assert footprint_of({**OPTICS, **PIXELS}, 40.0, 0.01, "camera")
+    with pytest.raises(InfeasibleError):
+        footprint_of({**OPTICS, **PIXELS}, 40.1, 0.01, "camera")
 
 
 def test_a_resolution_without_an_image_size_is_refused():
