@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice
-from math import dist, inf
+from math import ceil, dist, inf
 
 from mmrs_core.analysis.figures import (
     MissingFigureError,
@@ -40,6 +40,9 @@ ENDURANCE_NAME = "endurance"
 ENERGY_NAME = "energy"
 RECHARGE_NAME = "recharge"
 
+_MOST = "up to"
+"""How the bound is called that no run exceeds."""
+
 CHARGER_REACH = 1.0
 """Metres around home within which batteries can be recharged."""
 
@@ -55,7 +58,7 @@ def _judge_endurance(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict
         return
     allowed = lifetime * (1.0 - input.program.reserve)
     sorties = once(input, _sorties)[robot.id]
-    yield from _judged_uses(ENDURANCE_NAME, robot, sorties, (1.0, 1.0), allowed, "s")
+    yield from _judged_uses(ENDURANCE_NAME, robot, sorties, (1.0, 1.0), allowed, "s", lifetime)
 
 
 def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
@@ -70,7 +73,7 @@ def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     sorties = once(input, _sorties)[robot.id]
     mean = stored / lifetime
     most = mean * kinematics_of(input, robot).draw if sorties.uses else mean
-    yield from _judged_uses(ENERGY_NAME, robot, sorties, (mean, most), allowed, "J")
+    yield from _judged_uses(ENERGY_NAME, robot, sorties, (mean, most), allowed, "J", lifetime)
 
 
 def _lifetime(input: CheckInput, robot: RobotProgram) -> float | None:
@@ -91,8 +94,12 @@ def _judged_uses(
     rate: tuple[float, float],
     allowed: float,
     unit: str,
+    lifetime: float,
 ) -> Iterator[Verdict]:
-    """Judge the largest use, and the first that no run can keep; `rate` is the least and most a second."""
+    """Judge the largest use, and the first that no run can keep; `rate` is the least and most a second.
+
+    What is used of what is allowed falls as the lifetime grows.
+    """
     largest = max(sorties.uses, key=lambda use: use.seconds, default=None)
     if largest is None and not sorties.gaps:
         yield safe(property, robot, "it never runs on its batteries")
@@ -105,9 +112,11 @@ def _judged_uses(
             f"until {move.kind} '{move.id}' it needs {bound} {used:.1f} {unit} of one charge,"
             f" {allowed:.1f} {unit} are allowed"
         )
+        if used > allowed > 0.0 and bound == _MOST:
+            words += f": a lifetime of {ceil(lifetime * used / allowed)} s would do"
         return Margin(_rounded(allowed - used, allowed), use.move, words)
 
-    margins = [] if largest is None else [margin(largest, rate[1], "up to")]
+    margins = [] if largest is None else [margin(largest, rate[1], _MOST)]
     certain = (margin(use, rate[0], "at least") for use in sorted(sorties.least, key=lambda use: use.seconds))
     margins += islice((each for each in certain if each.value < 0.0), 1)
     yield from judged(property, robot, unit, margins, sorties.gaps)

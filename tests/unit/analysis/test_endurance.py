@@ -1,5 +1,6 @@
 """Time and energy of sorties, worked out by hand: robots go 2 m/s, lifetimes are 1000 s, reserves 20 %."""
 
+import re
 from dataclasses import replace
 from math import inf
 
@@ -33,8 +34,18 @@ def test_a_sortie_that_is_too_long_is_violated():
     assert (verdict.status, verdict.move) == (Status.VIOLATED, "h")
     assert verdict.margin == pytest.approx(-1.0)
     assert verdict.message == (
-        "a: until HoldPosition 'h' it needs up to 801.0 s of one charge, 800.0 s are allowed"
+        "a: until HoldPosition 'h' it needs up to 801.0 s of one charge, 800.0 s are allowed:"
+        " a lifetime of 1002 s would do"
     )
+
+
+@pytest.mark.parametrize("property", ["endurance", "energy"])
+def test_a_lifetime_that_is_proposed_is_enough_and_a_second_less_is_not(property):
+    program = robot("a", [hold("h", 1234.5)])
+    message = finding(property, given(program)).message
+    lifetime = float(re.findall(r"a lifetime of (\d+) s would do", message)[0])
+    assert finding(property, given(program, type=rover(lifetime=lifetime))).status is Status.SAFE
+    assert finding(property, given(program, type=rover(lifetime=lifetime - 1.0))).status is Status.VIOLATED
 
 
 def test_the_reserve_is_the_one_that_is_asked_for():
