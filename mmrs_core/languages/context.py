@@ -11,7 +11,7 @@ NS_URI = "urn:mmrs:context:1.0"
 
 
 def __getattr__(name: str) -> object:
-    return core_registry().package(NS_URI).member(name)
+    return globals().setdefault(name, core_registry().package(NS_URI).member(name))
 
 
 def __dir__() -> list[str]:

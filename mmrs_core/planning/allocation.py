@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, inf
+from math import ceil, dist, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +35,11 @@ _NEAREST_ROBOTS = 8
 _ROUTED = 12
 """Nearest stops to and from which routes are found; to and from others, straight ones are estimated."""
 
-_ROWS = 64
-"""Stops whose seconds to all others are found at once: all at once would take too much room."""
+_ROWS = 16
+"""Stops whose seconds to all others are found at once: as many as a processor keeps near itself."""
+
+_LENGTHS = 400
+"""Lengths of legs whose seconds are known; those of legs between are interpolated."""
 
 _FEWEST = 6
 """Jobs below which the search among schedules tries most of what there is."""
@@ -161,10 +164,12 @@ class _Fields:
             for i, row in zip(able.tolist(), legs.between(), strict=True):
                 go[k, i, able] = row
             out[np.ix_(robots, able)], back[np.ix_(robots, able)] = legs.home()
+        places = {name: r for r, name in enumerate(self._team.pilots)}
         for i, stop in enumerate(self._stops):
             if len(self._team.able(stop.job)) < len(kinds):
-                unable = set(self._team.pilots) - set(self._team.able(stop.job))
-                out[[r for r, name in enumerate(self._team.pilots) if name in unable], i] = inf
+                unable = np.ones(len(kinds), np.bool_)
+                unable[[places[name] for name in self._team.able(stop.job)]] = False
+                out[unable, i] = inf
         near, near_robots = _nearest(go), _nearest_robots(out)
         others = [self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)]
         most = max(map(len, others))
@@ -213,13 +218,16 @@ class _Legs:
         self._speeds = [each.speed for each in approaches]
         self._ends = [each.last(len(each) - 1) for each in materials]
         travel = pilots[0].travel
+        places = _places([*self._homes(), *self._begins, *self._ends])
+        self._longest = max(1.0, dist(places[:, :2].min(0), places[:, :2].max(0)))
+        self._seconds = dict[float | None, _LegSeconds]()
         self.work = [
             material.seconds(0, len(material) - 1)
             + sum(travel.at_speed(travel.hop(*leg), approach.speed).seconds for leg in pairwise(approach.via))
             for material, approach in zip(materials, approaches, strict=True)
         ]
 
-    def between(self) -> Iterator[Matrix]:
+    def between(self) -> Iterator[Singles]:
         """Yield, by stop, the seconds from its end to the begin of each."""
         begins, travel = _places(self._begins), self._pilots[0].travel
         for first in range(0, len(begins), _ROWS):
@@ -265,15 +273,16 @@ class _Legs:
             return inf
         return 0.0 if start == goal else travel.at_speed(route, self._speeds[stop]).seconds
 
-    def _straight(self, starts: Matrix, goals: Matrix, speeds: Sequence[float | None]) -> Matrix:
+    def _straight(self, starts: Matrix, goals: Matrix, speeds: Sequence[float | None]) -> Singles:
         """Return (starts, goals) the seconds of straight legs, at the speeds of the goals."""
-        level: Matrix = np.linalg.norm(starts[:, None, :2] - goals[None, :, :2], axis=2)
-        rise = goals[None, :, 2] - starts[:, None, 2]
-        found: Matrix = np.empty(level.shape)
-        for speed in dict.fromkeys(speeds):
-            columns = [j for j, each in enumerate(speeds) if each == speed]
-            rates = self._pilots[0].kinematics.rates(speed)
-            found[:, columns] = _leg_seconds(rates, level[:, columns], rise[:, columns])
+        found: Singles = np.empty((len(starts), len(goals)), np.float32)
+        distinct = dict.fromkeys(speeds)
+        for speed in distinct:
+            if speed not in self._seconds:
+                self._seconds[speed] = _LegSeconds(self._pilots[0].kinematics.rates(speed), self._longest)
+            alike = [j for j, each in enumerate(speeds) if each == speed] if len(distinct) > 1 else ()
+            some = alike or slice(None)
+            found[:, some] = self._seconds[speed].between(starts, goals[some])
         return found
 
 
@@ -281,26 +290,52 @@ def _places(positions: Sequence[Position]) -> Matrix:
     return np.array(positions, dtype=np.float64).reshape(-1, 3)
 
 
-def _leg_seconds(rates: Rates, level: Matrix, rise: Matrix) -> Matrix:
-    """Return the seconds of legs so long and so high, from a stop to a stop if level."""
-    lengths = np.concatenate([[0.0], np.geomspace(0.1, max(1.0, float(level.max(initial=1.0))), 200)])
-    seconds = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (each, 0.0, 0.0)) for each in lengths.tolist()]
-    up, down = (rates.upright(sign * 1.0) for sign in (1.0, -1.0))
-    with np.errstate(invalid="ignore"):  # no height takes no time, even where none can be gained
-        upright = np.where(np.abs(rise) <= LEVEL, 0.0, np.abs(rise) * np.where(rise > 0.0, up, down))
-    found: Matrix = np.maximum(np.interp(level, lengths, seconds), upright)
-    return found
+class _LegSeconds:
+    """The seconds of legs at one speed, from a stop to a stop.
+
+    Those of level legs are known for lengths whose roots are as far from each other as the next ones: a short
+    leg, on which a robot never reaches its speed, takes as long as the root of its length says.
+    """
+
+    def __init__(self, rates: Rates, longest: float) -> None:
+        roots = np.linspace(0.0, longest**0.5, _LENGTHS)
+        known = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (root * root, 0.0, 0.0)) for root in roots.tolist()]
+        self._known, self._per_root = np.array(known, np.float32), np.float32((_LENGTHS - 1) / roots[-1])
+        self._more = np.diff(self._known, append=self._known[-1])
+        self._up, self._down = (rates.upright(sign * 1.0) for sign in (1.0, -1.0))
+
+    def between(self, starts: Matrix, goals: Matrix) -> Singles:
+        """Return (starts, goals) the seconds of legs."""
+        (x, y, z), (to_x, to_y, to_z) = starts.T[:, :, None], goals.T[:, None]
+        level = ((to_x - x) ** 2).astype(np.float32)
+        level += ((to_y - y) ** 2).astype(np.float32)
+        roots = np.sqrt(np.sqrt(level, out=level), out=level)
+        roots *= self._per_root
+        column = roots.astype(np.int32)
+        roots -= column
+        found: Singles = self._more.take(column)
+        found *= roots
+        found += self._known.take(column)
+        if z.size and to_z.size and max(z.max() - to_z.min(), to_z.max() - z.min()) > LEVEL:
+            rise = to_z - z
+            with np.errstate(invalid="ignore"):  # no height takes no time, even where none can be gained
+                upright = np.abs(rise) * np.where(rise > 0.0, self._up, self._down)
+            np.maximum(found, np.where(np.abs(rise) <= LEVEL, 0.0, upright), out=found)
+        return found
 
 
 def _nearest(go: Singles) -> Indices:
     """Return, by stop, the others from which robots come there soonest, or to which they do."""
-    count = min(_NEAREST, go.shape[1] - 1)
-    found: Indices = np.zeros((go.shape[1], count), np.int64)
-    for i in range(len(found)):
-        both = np.minimum(go[:, i], go[:, :, i]).min(axis=0)
-        both[i] = inf
-        nearest = np.argpartition(both, count - 1)[:count] if count else found[i]
-        found[i] = nearest[np.lexsort((nearest, both[nearest]))]
+    stops = go.shape[1]
+    count = min(_NEAREST, stops - 1)
+    found: Indices = np.zeros((stops, count), np.int64)
+    for first in range(0, stops if count else 0, _ROWS):
+        some = np.arange(first, min(first + _ROWS, stops))
+        both = np.minimum(go[:, some], go[:, :, some].transpose(0, 2, 1)).min(axis=0)
+        both[np.arange(len(some)), some] = inf
+        nearest = np.argpartition(both, count - 1)[:, :count]
+        order = np.lexsort((nearest, np.take_along_axis(both, nearest, 1)))
+        found[some] = np.take_along_axis(nearest, order, 1)
     return found
 
 
@@ -308,5 +343,8 @@ def _nearest_robots(out: Matrix) -> Indices:
     """Return, by stop, the robots that are there soonest; those at one place take turns."""
     robots, stops = out.shape
     turn = (np.arange(robots)[None, :] - np.arange(stops)[:, None]) % robots
-    found: Indices = np.lexsort((turn, out.T.round(6)), axis=1)[:, :_NEAREST_ROBOTS]
-    return found
+    soonest = out.T.round(6) + turn * (5e-7 / robots)
+    count = min(_NEAREST_ROBOTS, robots)
+    nearest = np.argpartition(soonest, count - 1)[:, :count]
+    order = np.argsort(np.take_along_axis(soonest, nearest, 1))
+    return np.take_along_axis(nearest, order, 1)

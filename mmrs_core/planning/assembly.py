@@ -148,7 +148,7 @@ def why_idle(team: Team, robot: str) -> str:
 
 def _reason(team: Team, task: str, robot: str) -> str:
     if team.forwards(task, robot) is None:
-        return team.refusals.get((task, robot), "it cannot do the task")
+        return team.refusal(task, robot) or "it cannot do the task"
     if team.sharers(task) == 1 and len(team.able(task)) > 1 and team.whole(task):
         return "one robot must do all of it, and the mission ends no later with another one"
     wanted = team.tasks[task].wanted

@@ -166,7 +166,7 @@ class _Explaining:
         return all(self._team.forwards(task, robot) is not None for task in job.tasks())
 
     def _why_not(self, job: Job, robot: str) -> str:
-        reasons = (self._team.refusals.get((task, robot), "") for task in job.tasks())
+        reasons = (self._team.refusal(task, robot) for task in job.tasks())
         return next(filter(None, reasons), "it cannot do the task")
 
     def _others(self, job: Job, mine: tuple[str, ...], able: Sequence[str]) -> Iterator[tuple[str, ...]]:

@@ -340,7 +340,8 @@ def _unable(team: Team, job: Job) -> str:
     """Return which robots cannot do some task of a choice, and why; the others lack the charge."""
     why = []
     for name in team.pilots:
-        refused = [(task, team.refusals[task, name]) for task in job.tasks() if (task, name) in team.refusals]
+        reasons = {task: team.refusal(task, name) for task in job.tasks()}
+        refused = [(task, reason) for task, reason in reasons.items() if reason]
         task, reason = refused[0] if refused else ("", "its charge does not suffice")
         why.append(f"{name}: '{task}' {reason}" if task else f"{name}: {reason}")
     return "; ".join(why)

@@ -50,7 +50,6 @@ class Team:
         groups: by name of task: robots that can do it, by sort of work, which cameras with different
             footprints or different clearances make.
         mixtures: by name of task: the sorts that can share it, where there are several.
-        refusals: by (task, robot): why the robot cannot do the task.
         tasks: by name.
         kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
@@ -91,7 +90,9 @@ class Team:
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
-        self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
+        self._refusals = dict[tuple[str, str], str]()
+        self._members = dict[tuple[str, ...], dict[str, tuple[str, ...]]]()
+        self._whole = dict[str, bool]()
         self.tasks = {task.name: task for task in scene.tasks}
         self._crews: dict[tuple[str, ...], tuple[tuple[str, ...], dict[str, str]]] = {}
         self._able_robots: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {}
@@ -116,7 +117,7 @@ class Team:
         self.groups[task.name], self.mixtures[task.name] = tuple(groups), tuple(mixtures)
         found = groups[0] if len(groups) == 1 else self._in_order(groups)
         if found not in self._crews:
-            self._crews[found] = found, {self.kinds[name]: name for name in reversed(found)}
+            self._crews[found] = found, {kind: names[0] for kind, names in self._of_kinds(found).items()}
         self._able_robots[task.name] = self._crews[found]
         if len(groups) == 1:
             self.groups[task.name] = self._crews[found][:1]
@@ -125,54 +126,49 @@ class Team:
         found = {name for group in groups for name in group}
         return tuple(name for name in self.pilots if name in found)
 
-    def _sorts(self, task: Task) -> list[tuple[Work, list[str]]]:
+    def _sorts(self, task: Task) -> list[tuple[Work, tuple[str, ...]]]:
         """Return the robots whose work of a task is sound, by work; keep why others cannot do it."""
         works, name = self.scene.works, task.name
         if isinstance(works, SharedWorks):
-            able: Sequence[str] = works.able(name)
+            able = works.able(name)
         else:
-            able = [robot for robot in self.pilots if (name, robot) in works]
-        if len(able) < len(self.pilots):
-            for robot in self.pilots.keys() - set(able):
-                self.refusals.setdefault((name, robot), "has no work for it")
-        sorts: list[tuple[Work, list[str]]] = []
-        alike: dict[str, tuple[list[str], str]] = {}
-        for robot in able:
-            kind = self.kinds[robot]
-            if kind not in alike:
-                work, pilot = works[name, robot], self.pilots[robot]
-                fault, group = "; ".join(faults(work, pilot)), list[str]()
-                known = next((group for other, group in sorts if other is work or other == work), group)
-                if not fault and known is group:
-                    sorts.append((work, group))
-                alike[kind] = known, fault
-            group, fault = alike[kind]
-            if fault:
-                self.refusals[name, robot] = fault
+            able = tuple(robot for robot in self.pilots if (name, robot) in works)
+        sorts: list[tuple[Work, tuple[str, ...]]] = []
+        for robots in self._of_kinds(able).values():
+            work = works[name, robots[0]]
+            if fault := "; ".join(faults(work, self.pilots[robots[0]])):
+                self._refusals |= {(name, robot): fault for robot in robots}
+                continue
+            known = [i for i, (other, _) in enumerate(sorts) if other is work or other == work]
+            if known:
+                sorts[known[0]] = (work, self._in_order((sorts[known[0]][1], robots)))
             else:
-                group.append(robot)
+                sorts.append((work, robots))
         return sorts
+
+    def _of_kinds(self, robots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
+        """Return some robots by kind; the same ones for tasks that the same robots can do."""
+        if robots not in self._members:
+            members = dict[str, list[str]]()
+            for name in robots:
+                members.setdefault(self.kinds[name], []).append(name)
+            self._members[robots] = {kind: tuple(names) for kind, names in members.items()}
+        return self._members[robots]
 
     def _layout(self, work: Work, group: Sequence[str], robots: int) -> Layout:
         return layout_of(work, self.pilots[group[0]], robots, coarsest=self._coarsest, fine=self.fine)
 
-    def _able(self, task: str, work: Work, group: Sequence[str], robots: int) -> WorkGroup:
+    def _able(self, task: str, work: Work, group: tuple[str, ...], robots: int) -> WorkGroup:
         """Lay the work out for each robot of a group; return those that can follow it."""
-        layout = self._layout(work, group, robots)
-        able, reasons = [], dict[str, str]()
-        for name in group:
-            kind = self.kinds[name]
-            if (task, kind) not in self._layouts:
-                self._layouts[task, kind] = layout
-                try:
-                    self._materials[task, kind, False] = lay_out(task, work, layout, self.pilots[name])
-                except UnreachableError as error:
-                    reasons[kind] = str(error)
-            if kind in reasons:
-                self.refusals[task, name] = reasons[kind]
-            else:
-                able.append(name)
-        return WorkGroup(work, tuple(able), layout)
+        layout, able = self._layout(work, group, robots), group
+        for kind, names in self._of_kinds(group).items():
+            self._layouts[task, kind] = layout
+            try:
+                self._materials[task, kind, False] = lay_out(task, work, layout, self.pilots[names[0]])
+            except UnreachableError as error:
+                self._refusals |= {(task, name): str(error) for name in names}
+                able = tuple(name for name in able if name not in names)
+        return WorkGroup(work, able, layout)
 
     def wanting(self, wanted: Mapping[str, int]) -> Team:
         """Return the same team, materials and all, where tasks want so many robots."""
@@ -186,7 +182,7 @@ class Team:
 
     def forwards(self, task: str, robot: str) -> Material | None:
         """Return the material of a task for a robot; None if it cannot do the task."""
-        if (task, robot) in self.refusals:
+        if (task, robot) in self._refusals or (task, robot) not in self.scene.works:
             return None
         return self._materials.get((task, self.kinds[robot], False))
 
@@ -226,8 +222,10 @@ class Team:
 
     def whole(self, task: str) -> bool:
         """Return whether one robot must do all of a task."""
-        materials = [self.forwards(task, name) for name in self.able_kinds(task).values()]
-        return any(each is not None and each.whole for each in materials)
+        if task not in self._whole:
+            materials = [self.forwards(task, name) for name in self.able_kinds(task).values()]
+            self._whole[task] = any(each is not None and each.whole for each in materials)
+        return self._whole[task]
 
     def sharing_with(self, task: str, robot: str) -> tuple[str, ...]:
         """Return the robots that can share a task with one, itself included."""
@@ -269,9 +267,15 @@ class Team:
 
     def why_not(self, task: str) -> str:
         """Return why robots cannot do a task, robot by robot."""
-        return "; ".join(
-            f"{name}: {self.refusals[task, name]}" for name in self.pilots if (task, name) in self.refusals
-        )
+        refusals = {name: self.refusal(task, name) for name in self.pilots}
+        return "; ".join(f"{name}: {refusal}" for name, refusal in refusals.items() if refusal)
+
+    def refusal(self, task: str, robot: str) -> str | None:
+        """Return why a robot cannot do a task; None if it can."""
+        pair = task, robot
+        if pair in self._refusals or pair in self.scene.works:
+            return self._refusals.get(pair)
+        return self.scene.refusals.get(pair, "has no work for it")
 
     def too_long(self, task: str) -> bool:
         """Return whether some portion of a task is too long for a sortie of any robot."""
@@ -319,9 +323,9 @@ def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:
     return kinds
 
 
-def _families(sorts: Sequence[tuple[Work, list[str]]]) -> list[list[tuple[Work, list[str]]]]:
+def _families(sorts: Sequence[tuple[Work, tuple[str, ...]]]) -> list[list[tuple[Work, tuple[str, ...]]]]:
     """Return works and groups, those together that can share a task."""
-    families: list[list[tuple[Work, list[str]]]] = []
+    families: list[list[tuple[Work, tuple[str, ...]]]] = []
     for each in sorts:
         kin = (known for known in families if all(comparable(each[0], other) for other, _ in known))
         family = next(kin, None)

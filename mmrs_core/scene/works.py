@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import compress, pairwise
 from math import ceil, dist
 
 from mmrs_core.scene.primitives import Position, Ring
@@ -198,24 +198,26 @@ class SharedWorks(Mapping[tuple[str, str], Work]):
         """Begin without works."""
         self.sorts = sorts
         self._everyone = tuple(sorts)
-        self._works: dict[str, tuple[Sequence[Work | None], Collection[str]]] = {}
+        self._places = {robot: i for i, robot in enumerate(sorts)}
+        self._works: dict[str, tuple[Sequence[Work | None], bytes]] = {}
 
-    def add(self, task: str, works: Sequence[Work | None], without: Collection[str]) -> None:
-        """Add the works of a task, by sort of robot; some robots cannot do it all the same."""
-        self._works[task] = (works, without)
+    def add(self, task: str, works: Sequence[Work | None], able: bytes) -> None:
+        """Add the works of a task, by sort; able: 1 for each robot that can do it, else 0."""
+        self._works[task] = (works, b"" if all(able) else able)
 
     def able(self, task: str) -> tuple[str, ...]:
         """Return the robots that have work for a task, in the order of the sorts' robots."""
-        works, without = self._works.get(task, ((), ()))
-        if all(works) and works and not without:
-            return self._everyone
-        return tuple(robot for robot in self._everyone if (task, robot) in self)
+        if task not in self._works:
+            return ()
+        able = self._works[task][1]
+        return tuple(compress(self._everyone, able)) if able else self._everyone
 
     def __getitem__(self, pair: tuple[str, str]) -> Work:
         """Return the work of a robot for a task."""
-        works, without = self._works[pair[0]]
-        work = works[self.sorts[pair[1]]]
-        if work is None or pair[1] in without:
+        task, robot = pair
+        works, able = self._works[task]
+        work = works[self.sorts[robot]]
+        if work is None or (able and not able[self._places[robot]]):
             raise KeyError(pair)
         return work
 

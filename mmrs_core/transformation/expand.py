@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import ceil, dist, inf, isfinite
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mmrs_core.contributions.rules import (
     ElementKind,
@@ -56,14 +59,56 @@ def expand(
             for robot in robots
         }
     )
-    refusals: dict[tuple[str, str], str] = {}
+    sorts = [_Sort(robots, sort, works.sorts) for sort in range(len(numbers))]
+    refusals = _Refusals(works, robots)
     for task in scene.tasks:
         if not task.part.is_a(CONTROL_TASK):
-            _expand_task(task, scene, rules, works, refusals)
+            _expand_task(task, scene, rules, sorts, refusals)
     reasons = list(_undoable(scene, works, refusals))
     if reasons:
         raise InfeasibleError(f"{len(reasons)} of the tasks can be done by no robot", reasons)
     return replace(scene, works=works, refusals=refusals)
+
+
+class _Sort:
+    """Robots that do alike what each of them can do, so that one work serves all whose radio reaches it."""
+
+    def __init__(self, robots: Sequence[Robot], sort: int, sorts: Mapping[str, int]) -> None:
+        self.places = [i for i, robot in enumerate(robots) if sorts[robot.name] == sort]
+        self.first = robots[self.places[0]]
+        self._reach = _reach(self.first)
+        self._homes = np.array([robots[i].home for i in self.places])
+
+    def reached(self, work: Work) -> NDArray[np.bool_] | bool:
+        """Return, by robot, whether its radio reaches all of a work from its home."""
+        if self._reach == inf:
+            return True
+        return np.asarray(_most_distant(work, self._homes) <= self._reach)
+
+
+class _Refusals(Mapping[tuple[str, str], str]):
+    """Why robots cannot do tasks; pairs take no room, for words are made when they are asked for."""
+
+    def __init__(self, works: SharedWorks, robots: Sequence[Robot]) -> None:
+        self.works, self._robots = works, {robot.name: robot for robot in robots}
+        self.of_sorts: dict[str, Sequence[Work | str]] = {}
+
+    def __getitem__(self, pair: tuple[str, str]) -> str:
+        """Return why a robot cannot do a task."""
+        task, robot = pair
+        if pair in self.works:
+            raise KeyError(pair)
+        found = self.of_sorts[task][self.works.sorts[robot]]
+        return found if isinstance(found, str) else out_of_reach(found, self._robots[robot]) or ""
+
+    def __iter__(self) -> Iterator[tuple[str, str]]:
+        """Yield the pairs that have no work."""
+        pairs = ((task, robot) for task in self.of_sorts for robot in self._robots)
+        return (pair for pair in pairs if pair not in self.works)
+
+    def __len__(self) -> int:
+        """Return how many pairs have no work."""
+        return len(self.of_sorts) * len(self._robots) - len(self.works)
 
 
 def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]) -> Robot:
@@ -81,29 +126,18 @@ def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]
 
 
 def _expand_task(
-    task: Task,
-    scene: Scene,
-    rules: Mapping[Name, Rule],
-    works: SharedWorks,
-    refusals: dict[tuple[str, str], str],
+    task: Task, scene: Scene, rules: Mapping[Name, Rule], sorts: Sequence[_Sort], refusals: _Refusals
 ) -> None:
     name = most_specific(task.part.metaclasses, rules)
     if name is None:
         what = task.part.metaclasses[0][1] if task.part.metaclasses else "unknown type"
         raise InfeasibleError(f"task '{task.name}': no installed plug-in has a rule for a {what}")
-    alike: dict[int, Work | str] = {}
-    without = set[str]()
-    for robot in scene.robots:
-        sort = works.sorts[robot.name]
-        if sort not in alike:
-            alike[sort] = _work(task, robot, scene, rules[name])
-        found = alike[sort]
-        refusal = found if isinstance(found, str) else out_of_reach(found, robot)
-        if refusal:
-            refusals[task.name, robot.name] = refusal
-            without.add(robot.name)
-    by_sort = [each if isinstance(each, Work) else None for _, each in sorted(alike.items())]
-    works.add(task.name, by_sort, without)
+    able = np.zeros(len(scene.robots), np.bool_)
+    found = [_work(task, sort.first, scene, rules[name]) for sort in sorts]
+    for sort, work in zip(sorts, found, strict=True):
+        able[sort.places] = not isinstance(work, str) and sort.reached(work)
+    refusals.of_sorts[task.name] = found
+    refusals.works.add(task.name, [None if isinstance(each, str) else each for each in found], able.tobytes())
 
 
 def _work(task: Task, robot: Robot, scene: Scene, rule: Rule) -> Work | str:
@@ -122,11 +156,9 @@ def _missing(task: Task, devices: Mapping[str, Device]) -> Iterator[str]:
     yield from (f"has no device for action '{action}'" for action in task.actions if action not in supported)
 
 
-def _undoable(
-    scene: Scene, works: Mapping[tuple[str, str], Work], refusals: Mapping[tuple[str, str], str]
-) -> Iterator[str]:
+def _undoable(scene: Scene, works: SharedWorks, refusals: Mapping[tuple[str, str], str]) -> Iterator[str]:
     for task in scene.tasks:
-        if task.part.is_a(CONTROL_TASK) or any((task.name, robot.name) in works for robot in scene.robots):
+        if task.part.is_a(CONTROL_TASK) or works.able(task.name):
             continue
         why = "; ".join(f"{robot.name}: {refusals[task.name, robot.name]}" for robot in scene.robots)
         yield f"task '{task.name}' can be done by no robot ({why})"
@@ -150,14 +182,25 @@ def unfit(robot: Robot, scene: Scene) -> str | None:
 
 def out_of_reach(work: Work, robot: Robot) -> str | None:
     """Return why the radio does not reach all of a work from the robot's home; None if it does."""
-    reach = _number(robot.type.part.attributes.get("communicationRange"), inf)
-    if reach == inf:
-        return None
-    places = (point for stroke in work.strokes for point in stroke.points)
-    farthest = max((dist(place, robot.home) for place in places), default=0.0)
-    if farthest <= reach:
-        return None
-    return f"would be {ceil(farthest)} m from home, its radio reaches {reach:g} m"
+    reach = _reach(robot)
+    most = inf if reach == inf else float(_most_distant(work, np.array([robot.home]))[0])
+    return None if most <= reach else f"would be {ceil(most)} m from home, its radio reaches {reach:g} m"
+
+
+def _most_distant(work: Work, homes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return, by home, the metres to the point of a work that is most distant from it."""
+    points = np.array([point for stroke in work.strokes for point in stroke.points])
+    found = np.zeros(len(homes))
+    if len(points) < len(homes):
+        for each in points:
+            np.maximum(found, np.linalg.norm(homes - each, axis=1), out=found)
+    else:
+        found[:] = [np.linalg.norm(points - each, axis=1).max() for each in homes]
+    return found
+
+
+def _reach(robot: Robot) -> float:
+    return _number(robot.type.part.attributes.get("communicationRange"), inf)
 
 
 def _number(value: Value, absent: float) -> float:

@@ -82,18 +82,21 @@ def able(task: Element, models: ModelSet) -> tuple[DrawnRobot, ...]:
 
     There is none where the type of one is not known: what it can do is not known either.
     """
-    team = sketch_of(models).robots
-    if any(robot.type is None for robot in team):
-        return ()
-    types = {robot.type for robot in team if robot.type is not None}
-    fit = {robot_type for robot_type in types if not lacks(task, robot_type)}
-    return tuple(robot for robot in team if robot.type in fit)
+    return tuple(robot for robots in able_by_type(task, models) for robot in robots)
+
+
+def able_by_type(task: Element, models: ModelSet) -> list[tuple[DrawnRobot, ...]]:
+    """Return what `able` does, by type."""
+    types = sketch_of(models).types
+    if None in types:
+        return []
+    return [robots for robot_type, robots in types.items() if robot_type and not lacks(task, robot_type)]
 
 
 def undoable(task: Element, models: ModelSet) -> bool:
     """Return whether it is known that no robot of the team has what a task names."""
-    team = sketch_of(models).robots
-    return bool(team) and all(robot.type is not None for robot in team) and not able(task, models)
+    types = sketch_of(models).types
+    return bool(types) and None not in types and not able_by_type(task, models)
 
 
 def _nobody(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -109,7 +112,7 @@ def _nobody(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 def _too_many(task: Element, models: ModelSet) -> Iterator[Finding]:
     wanted = number(task, "robotsWanted")
-    if wanted is not None and 0 < (count := len(able(task, models))) < wanted:
+    if wanted is not None and 0 < (count := sum(map(len, able_by_type(task, models)))) < wanted:
         yield finding(task, f"wants {wanted:g} robots, but only {count} of the team can do it")
 
 
@@ -123,7 +126,7 @@ def _too_deep(task: Element, models: ModelSet) -> Iterator[Finding]:
     depth = _depth(task, models)
     if depth is None:
         return
-    types = {robot.type for robot in able(task, models) if robot.type is not None}
+    types = {robots[0].type for robots in able_by_type(task, models) if robots[0].type is not None}
     limits = [_deepest(each, models) for each in types]
     known = [limit for limit in limits if limit is not None]
     if known and len(known) == len(limits) and depth > max(known):

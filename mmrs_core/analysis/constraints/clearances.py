@@ -11,7 +11,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.analysis.constraints.blocked import SEGMENTS, BlockedLine, blocked_line
-from mmrs_core.analysis.constraints.capabilities import able
+from mmrs_core.analysis.constraints.capabilities import able_by_type
 from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
@@ -84,7 +84,7 @@ def _at_work(task: Element, position: Position | None, sketch: Sketch) -> Positi
 
 def smallest_clearance(task: Element, models: ModelSet) -> float | None:
     """Return the clearance of the smallest robot that can do a task, metres; None if one is not known."""
-    clearances = [robot.clearance for robot in able(task, models)]
+    clearances = [robots[0].clearance for robots in able_by_type(task, models)]
     known = [each for each in clearances if each is not None]
     return min(known) if known and len(known) == len(clearances) else None
 

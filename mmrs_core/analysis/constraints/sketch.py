@@ -7,7 +7,7 @@ constraint or the metamodel says so.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -118,6 +118,14 @@ class Sketch:
         """The team; the robots of a behaviour that stands for itself."""
         owner = self._framed if self._team is None else self._team
         return tuple(self._robot(each) for each in children(owner, "robots"))
+
+    @drawn_once
+    def types(self) -> Mapping[Element | None, tuple[DrawnRobot, ...]]:
+        """The robots of the team by type; None: of one that is not known."""
+        found = dict[Element | None, list[DrawnRobot]]()
+        for robot in self.robots:
+            found.setdefault(robot.type, []).append(robot)
+        return {robot_type: tuple(robots) for robot_type, robots in found.items()}
 
     def ring(self, owner: Element, feature: str) -> Ring | None:
         """Return the vertices of a ring, each once; None where one of them has no place."""

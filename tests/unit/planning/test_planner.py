@@ -131,9 +131,9 @@ def test_a_plan_that_cannot_be_better_is_at_its_lower_bound(returns):
 def test_robots_of_one_sort_that_can_do_different_tasks_share_what_is_laid_out():
     one, two = map(visit, PLACES)
     works = SharedWorks({"r1": 0, "r2": 0})
-    works.add("a", (one,), {"r2"})
-    works.add("b", (two,), {"r1"})
-    works.add("c", (one,), ())
+    works.add("a", (one,), b"\1\0")
+    works.add("b", (two,), b"\0\1")
+    works.add("c", (one,), b"\1\1")
     assert works == {("a", "r1"): one, ("b", "r2"): two, ("c", "r1"): one, ("c", "r2"): one}
     whole = replace(scene(TWO, {"a": one, "b": two, "c": one}), works=works)
     team = Team(whole)
