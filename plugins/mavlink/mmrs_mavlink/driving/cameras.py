@@ -41,6 +41,12 @@ class Cameras:
         """Return whether one continues on its own."""
         return any(action.command != VIDEO_STOP_CAPTURE for action in self._last.values())
 
+    def rest(self, vehicle: Vehicle) -> None:
+        """Stop all triggers by distance, without waiting for answers: nothing may delay a response."""
+        for _, function in self._last:
+            if function == TRIGGER_DISTANCE:
+                vehicle.ask(TRIGGER_DISTANCE, 0.0, 0.0, 0.0)
+
     def restore(self, vehicle: Vehicle) -> None:
         """Send all cameras their last continuous commands again.
 

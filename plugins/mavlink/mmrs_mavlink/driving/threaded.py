@@ -214,6 +214,8 @@ class ThreadedVehicle(Vehicle):
         self._under_way, self._brakes = (), lambda: False
         job = self._response.begin(response, found, self._note_decision, restored=self._reception.is_restored)
         if job is not None:
+            if response != NOTHING:
+                job.first(lambda: self._cameras.rest(self._with.vehicle))
             self._worker.begin(job, afresh=True)
             self._wake_vehicle()
 

@@ -19,7 +19,7 @@ from ..links.link import Link, Message
 from ..links.messages import ANYBODY
 from ..profiles import VehicleProfile, modes
 from ..program import Geographic, Look, Place, Travel
-from ..services.commands import command, name_of
+from ..services.commands import ask, command, name_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import preparation
@@ -252,6 +252,10 @@ class MavlinkVehicle(Vehicle):
                 raise UnansweredError(
                     f"{name_of(number)}: no image was reported within {IMAGE_SECONDS:.0f} s"
                 )
+
+    def ask(self, number: int, *params: float) -> None:
+        """Send a command once, without waiting for the answer."""
+        ask(self._link, number, *params)
 
     def measure(self, value: str, seconds: float) -> float:
         """Return the next value published under that name.

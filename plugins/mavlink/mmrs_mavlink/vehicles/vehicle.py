@@ -72,6 +72,9 @@ class Vehicle:
     def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
         """Carry out a device action; `confirmed`: wait for the report of its image, too."""
 
+    def ask(self, number: int, *params: float) -> None:
+        """Send a command once, without waiting for the answer."""
+
     def measure(self, value: str, seconds: float) -> float | None:
         """Return the next value published under that name; None in a dry run.
 

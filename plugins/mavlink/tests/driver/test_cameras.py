@@ -21,6 +21,9 @@ class Vehicle:
     def operate(self, command: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
         self.sent.append((command, params))
 
+    def ask(self, command: int, *params: float) -> None:
+        self.sent.append((command, params))
+
 
 @pytest.mark.parametrize(
     ("noted", "sent"),
@@ -36,3 +39,14 @@ def test_a_trigger_that_has_ended_is_not_begun_again(noted, sent):
         cameras.note(each)
     cameras.restore(vehicle)
     assert vehicle.sent == sent
+
+
+def test_a_camera_takes_no_photos_while_its_robot_returns_and_goes_on_when_it_resumes():
+    cameras, vehicle = Cameras(ROBOT, ()), Vehicle()
+    cameras.rest(vehicle)
+    for each in (FILM, BEGIN):
+        cameras.note(each)
+    cameras.rest(vehicle)
+    assert vehicle.sent == [(206, (0.0, 0.0, 0.0))]
+    cameras.restore(vehicle)
+    assert vehicle.sent[1:] == [(2500, (1.0,)), (206, (8.5, 0.0, 1.0))]
