@@ -38,8 +38,24 @@ def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         begins={name: begin for name, (begin, _) in spans.items()},
         ends={name: end for name, (_, end) in spans.items()},
         left_out=omissions_of(team.scene, steps),
-        notes=(*_stranded(team, schedule), *_unstated_flow(team.scene), *_NOTES),
+        notes=(
+            *_stranded(team, schedule),
+            *_of_works(team.scene, steps),
+            *_unstated_flow(team.scene),
+            *_NOTES,
+        ),
     )
+
+
+def _of_works(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> Iterator[str]:
+    """Yield the notes of works that the plan contains; robots that share a note in one line."""
+    found: dict[tuple[str, str], dict[str, None]] = {}
+    for robot, mine in steps.items():
+        for serve in _serves(mine):
+            for note in scene.works[serve.task, robot].notes:
+                found.setdefault((serve.task, note), {})[robot] = None
+    for (task, note), robots in found.items():
+        yield f"task '{task}', {', '.join(robots)}: {note}"
 
 
 def _unstated_flow(scene: Scene) -> Iterator[str]:

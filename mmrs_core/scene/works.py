@@ -176,6 +176,8 @@ class Work:
         entry: where the first share begins before its first stroke; None: at the first stroke.
         coverage: for works over an area.
         gaps: what is left out of lines, since it cannot be followed.
+        notes: what users should know of it, such as what it costs that a device lacks; shown with the plan
+            after the names of task and robot.
     """
 
     strokes: tuple[Stroke, ...]
@@ -185,6 +187,7 @@ class Work:
     entry: Position | None = None
     coverage: Coverage | None = None
     gaps: tuple[Gap, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 class SharedWorks(Mapping[tuple[str, str], Work]):

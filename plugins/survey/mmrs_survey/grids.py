@@ -13,7 +13,7 @@ from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Robot, Scene, Task, Work
 from mmrs_core.scene.attributes import holes, number, position, ring, text
 from mmrs_survey.names import PHOTO_GRID_TASK
-from mmrs_survey.passing import trigger_of
+from mmrs_survey.passing import capture_of
 from mmrs_survey.spacing import spacing_of
 
 RULE = "photo_grid"
@@ -32,8 +32,7 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
     action = text(part, "actionName")
     device = device_for(robot.type, action, text(part, "deviceId"))
     spacing = spacing_of(part, device, altitude)
-    trigger = trigger_of(part, robot, device, spacing.length, altitude)
-    speed = number(part, "speed") if trigger is None else trigger.speed
+    capture = capture_of(part, robot, device, spacing.length, altitude)
     work = work_over(
         scene,
         robot,
@@ -45,15 +44,15 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
             rule=RULE,
             action=action,
             device=device.id,
-            speed=speed,
-            slow_down=None if speed is None else 1.0,
-            passing=None if trigger is None else trigger.action,
+            speed=capture.speed,
+            slow_down=None if capture.speed is None else 1.0,
+            passing=capture.passing,
             start=(entry[0], entry[1]),
             pattern=pattern_of(part),
         ),
         holes(part),
     )
-    return replace(work, entry=entry)
+    return replace(work, entry=entry, notes=capture.notes)
 
 
 PHOTO_GRID_RULE = Rule(RULE, PHOTO_GRID_TASK, photo_grid_work)

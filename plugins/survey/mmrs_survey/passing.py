@@ -15,15 +15,22 @@ AT_STOPS, IN_PASSING = "AT_STOPS", "IN_PASSING"
 
 
 @dataclass(frozen=True, slots=True)
-class Trigger:
-    """How a camera takes photos in passing: its action, and the largest speed, metres per second."""
+class Capture:
+    """How a robot takes the photos of a task.
 
-    action: str
-    speed: float
+    Attributes:
+        passing: action of the camera that takes them in passing; None: the robot stops for each.
+        speed: largest, metres per second; None: as on any way.
+        notes: why it stops where the task leaves that open.
+    """
+
+    passing: str | None
+    speed: float | None
+    notes: tuple[str, ...] = ()
 
 
-def trigger_of(part: Part, robot: Robot, camera: Device, spacing: float, height: float) -> Trigger | None:
-    """Return how a task's photos are taken in passing; None where the robot stops for each.
+def capture_of(part: Part, robot: Robot, camera: Device, spacing: float, height: float) -> Capture:
+    """Return how a robot takes the photos of a task.
 
     Args:
         camera: that takes them.
@@ -33,9 +40,9 @@ def trigger_of(part: Part, robot: Robot, camera: Device, spacing: float, height:
     Raises:
         InfeasibleError: the task asks for photos in passing, and the camera or the robot cannot do that.
     """
-    asked, action = text(part, "capture"), text(part, "triggerAction")
+    asked, action, speed = text(part, "capture"), text(part, "triggerAction"), number(part, "speed")
     if asked == AT_STOPS:
-        return None
+        return Capture(None, speed)
     try:
         if action not in camera.actions or DISTANCE not in camera.actions[action].parameters:
             raise InfeasibleError(
@@ -43,9 +50,8 @@ def trigger_of(part: Part, robot: Robot, camera: Device, spacing: float, height:
                 "in passing"
             )
         blur, pixel = number(part, "blur") or 0.0, pixel_at(camera.properties, height)
-        most = number(part, "speed") or inf
-        return Trigger(action, passing_speed(camera, robot, spacing, pixel, blur, most))
-    except InfeasibleError:
+        return Capture(action, passing_speed(camera, robot, spacing, pixel, blur, speed or inf))
+    except InfeasibleError as error:
         if asked == IN_PASSING:
             raise
-        return None
+        return Capture(None, speed, (f"stops for each photo: {error}",))

@@ -24,7 +24,8 @@ def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
     if not line:
         raise InfeasibleError("points are missing")
     turned = flag(part, "inverted")
-    shots = shots_of(part, robot, min(up for _, _, up in line))
+    height = min(up for _, _, up in line)
+    shots = shots_of(part, robot, height)
     lines = lines_over(line[::-1] if turned else line, number(part, "width"), shots.strip)
     entry = at_altitude((position(part, "initialPosition"),), number(part, "altitude"))[0]
     refuse_heights(robot, (entry, *(point for line in lines for point in line)))
@@ -37,10 +38,10 @@ def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
     if turned and not free:
         ways = [(line[::-1], (index, stretch[::-1])) for line, (index, stretch) in ways[::-1]]
     strokes = (
-        replace(photographed(part, robot, line, shots), reversible=free, part=called[index], stretch=stretch)
+        replace(photographed(part, line, shots), reversible=free, part=called[index], stretch=stretch)
         for line, (index, stretch) in ways
     )
-    turning, closed = number(part, "turnaroundDistance") or 0.0, closed_at(scene, robot, shots.height)
+    turning, closed = number(part, "turnaroundDistance") or 0.0, closed_at(scene, robot, height)
     return Work(
         tuple(turned_around(strokes, turning, closed)),
         divisible=True,
@@ -48,6 +49,7 @@ def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
         ordered=not free,
         entry=entry,
         gaps=found.gaps,
+        notes=shots.capture.notes,
     )
 
 

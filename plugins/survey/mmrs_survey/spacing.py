@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import dist
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import device_for
 from mmrs_core.scene import ActionAt, Device, Part, Position, Repetition, Robot, Stroke
 from mmrs_core.scene.attributes import number, text
 from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of
-from mmrs_survey.lines import cuts_between, even_distances
-from mmrs_survey.passing import trigger_of
+from mmrs_survey.lines import cuts_between, even_distances, length_of
+from mmrs_survey.passing import Capture, capture_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,13 +21,13 @@ class Shots:
         camera: that takes them; None: none are taken.
         every: metres between two of them, at most.
         strip: metres between neighbouring paths, at most; None where what a photo covers is not known.
-        height: of the camera above what it photographs, metres.
+        capture: how they are taken.
     """
 
     camera: Device | None
     every: float
     strip: float | None
-    height: float
+    capture: Capture
 
 
 def shots_of(part: Part, robot: Robot, height: float, *, sideways: bool = False) -> Shots:
@@ -49,27 +47,28 @@ def shots_of(part: Part, robot: Robot, height: float, *, sideways: bool = False)
     strip = None if across is None else across * side
     resolution = number(part, "groundResolution")
     if every is None and resolution is None:
-        return Shots(None, 0.0, strip, height)
+        return Shots(None, 0.0, strip, Capture(None, number(part, "speed")))
     camera = device_for(robot.type, text(part, "actionName"), text(part, "deviceId"))
     if resolution is not None:
         seen = footprint_of(camera.properties, height, resolution, camera.id)
         along, across = (seen.width, seen.length) if sideways else (seen.length, seen.width)
         every, strip = every or along * front, across * side
-    return Shots(camera, every or 0.0, strip, height)
+    spacing = every or 0.0
+    return Shots(camera, spacing, strip, capture_of(part, robot, camera, spacing, height))
 
 
-def photographed(part: Part, robot: Robot, line: tuple[Position, ...], shots: Shots) -> Stroke:
+def photographed(part: Part, line: tuple[Position, ...], shots: Shots) -> Stroke:
     """Return the stroke along a line with its photos, in passing where task and camera allow that."""
+    how = shots.capture
+    plain = Stroke(line, speed=how.speed, slow_down=None if how.speed is None else 1.0)
     if shots.camera is None:
-        return Stroke(line, cuts=cuts_between(line, ()))
-    at = even_distances(sum(dist(a, b) for a, b in pairwise(line)), shots.every)
-    stroke = Stroke(line, cuts=cuts_between(line, at))
-    trigger = trigger_of(part, robot, shots.camera, shots.every, shots.height) if len(at) > 1 else None
-    if trigger is None:
+        return replace(plain, cuts=cuts_between(line, ()))
+    at = even_distances(length_of(line), shots.every)
+    stroke = replace(plain, cuts=cuts_between(line, at))
+    if how.passing is None or len(at) == 1:
         action = text(part, "actionName")
         return replace(stroke, actions=tuple(ActionAt(where, action, shots.camera.id) for where in at))
-    repetition = Repetition(shots.every, trigger.action, shots.camera.id)
-    return replace(stroke, repetition=repetition, speed=trigger.speed, slow_down=1.0)
+    return replace(stroke, repetition=Repetition(shots.every, how.passing, shots.camera.id))
 
 
 def spacing_of(part: Part, device: Device, altitude: float) -> Footprint:

@@ -177,6 +177,8 @@ def test_a_robot_stops_for_photos_where_its_camera_or_the_task_wants_it(robot, s
     asked, able = in_passing(task, capture=capture), snapper() if capture == "AT_STOPS" else robot()
     work = photo_grid_work(asked, able, scene())
     assert not any(stroke.repetition for stroke in work.strokes)
+    said = ("stops for each photo: device 'camera' has no action 'TriggerByDistance' with a parameter",)
+    assert [note[: len(said[0])] for note in work.notes] == [*said][: capture == "AUTOMATIC"]
 
 
 def test_a_camera_that_can_takes_photos_in_passing_unless_it_must_not(snapper, scene, task):
