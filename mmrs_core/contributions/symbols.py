@@ -34,8 +34,8 @@ class MapSymbol:
         fields: attributes that an editor offers first and pictures show, by feature name.
         outlines: rings (east, north) in metres that an element's figures make beside its coordinates, such
             as a circle of its radius; none where a figure is missing. None: its coordinates are all.
-        usual_for: the shape of which such a task is made where a drawing does not state its purpose, or a
-            waypoint of a mission.
+        usual_for: the shape of which such a task is made where a drawing does not state its purpose, a
+            waypoint of a mission, or a structure to go round.
         initial: values of a new element, by feature name.
         alternatives: sets of features of which one replaces the others; when one is given, the
             `initial` values of the others are not used.
@@ -54,7 +54,7 @@ class MapSymbol:
     icon: str
     fields: tuple[str, ...] = ()
     outlines: Callable[[Part], tuple[Ring, ...]] | None = None
-    usual_for: Literal["", "point", "line", "area", "waypoint"] = ""
+    usual_for: Literal["", "point", "line", "area", "waypoint", "structure"] = ""
     initial: Mapping[str, Property] = field(default_factory=dict, hash=False)
     alternatives: tuple[frozenset[str], ...] = ()
     height: str = ""

@@ -118,7 +118,8 @@ def answering_share(strokes: Sequence[Stroke], robot: Robot) -> float:
         for each in (action_seconds(robot.type, action) for action in stroke.commands):
             later += max(0.0, acting(each, timing).longest - spread * each)
             seconds += each
-        for place in (stroke.points[0], stroke.points[-1]):
+        begin, half, end = (stroke.points[index] for index in (0, len(stroke.points) // 2, -1))
+        for place in (begin, end) if dist(begin, end) > NEAR else (begin, half, end):
             seconds += rates.from_stop_to_stop(here, place)
             here = place
     return later / (spread * seconds) if seconds > 0.0 else 0.0

@@ -49,7 +49,7 @@ def drawn_values(
         if (name, kind.feature) == ("height", "obstacles"):
             attribute = "maxHeight"
         at = metaclass.by_name.get(attribute)
-        if at is None and feature.role in (Role.SURVEY, Role.CORRIDOR):
+        if at is None and feature.role in (Role.SURVEY, Role.CORRIDOR, Role.STRUCTURE):
             unused.append(name)
         if at is None or at.is_reference or at.name == "name" or value == kind.name:
             continue

@@ -38,7 +38,6 @@ _BY_WORDS = {
 _LEFT = {
     Role.INCLUSION: "robots are kept out of areas, not inside them: draw what they must not enter",
     Role.ELEMENT: "it is a context element of no type that is installed",
-    Role.STRUCTURE: "no usual task goes round a structure",
     Role.PATH: "it was planned already",
     Role.CHOSEN_RALLY_POINT: "it was chosen from the emergency areas",
     Role.TRACK: "it is the track of a robot or a person",
@@ -253,7 +252,11 @@ class Chooser:
         )
 
     def _usual_task(self, feature: MapFeature) -> Kind | str:
-        return self._kinds.usual(shape_of(feature), waypoint=feature.role is Role.WAYPOINT)
+        return self._kinds.usual(
+            shape_of(feature),
+            waypoint=feature.role is Role.WAYPOINT,
+            structure=feature.role is Role.STRUCTURE,
+        )
 
 
 def shape_of(feature: MapFeature) -> Geometry:

@@ -110,9 +110,10 @@ class ImportKinds:
         found = (kind for name in self._short_names() for kind in self._types[name])
         return tuple(kind for kind in found if kind.feature == "tasks" and kind.shapes)
 
-    def usual(self, geometry: Geometry, *, waypoint: bool = False) -> Kind | str:
+    def usual(self, geometry: Geometry, *, waypoint: bool = False, structure: bool = False) -> Kind | str:
         """Return what features of a geometry usually become, or why that is not known."""
         wanted = "waypoint" if waypoint and geometry is Geometry.POINT else geometry.value
+        wanted = "structure" if structure else wanted
         kinds = [
             kind for name in self._short_names() for kind in self._types[name] if kind.is_usual_for == wanted
         ]
@@ -122,7 +123,7 @@ class ImportKinds:
             return kinds[0]
         if kinds:
             return f"it could become {' or '.join(sorted(kind.name for kind in kinds))}"
-        return f"no plug-in has a usual task for {geometry.value}s"
+        return f"no plug-in has a usual task for {wanted}s"
 
     def _short_names(self) -> Iterator[str]:
         return (name for name in sorted(self._types) if "." not in name)

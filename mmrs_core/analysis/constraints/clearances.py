@@ -284,7 +284,11 @@ CONSTRAINTS = (
         Severity.WARNING,
     ),
     Constraint(
-        "MML084", "Some part of an area task can be reached.", (MISSION, "PolygonTask"), _covered, _MOVE_TASK
+        "MML084",
+        "Some part of an area to cover can be reached.",
+        (MISSION, "SweepTask"),
+        _covered,
+        _MOVE_TASK,
     ),
     Constraint(
         "MML085",
@@ -333,8 +337,8 @@ CONSTRAINTS = (
     ),
     Constraint(
         "MML091",
-        "All of an area task can be reached.",
-        (MISSION, "PolygonTask"),
+        "All of an area to cover can be reached.",
+        (MISSION, "SweepTask"),
         _partly_covered,
         "cut a hole there if it need not be done",
         Severity.NOTE,

@@ -8,11 +8,11 @@ from itertools import groupby
 from mmrs_core.analysis.constraints.capabilities import undoable
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.grounding.features import children, number, text
-from mmrs_core.languages.element import Element, container_of, label_of, metaclass_of
+from mmrs_core.languages.element import Element, container_of, is_kind, label_of, metaclass_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.planning.devices import figure
 from mmrs_survey.camera import CAMERA_KEYS
-from mmrs_survey.names import SURVEY
+from mmrs_survey.names import PATH_PHOTO_TASK, SURVEY
 
 SPACED = ("photoDistance", "footprintLength", "groundResolution")
 """What makes a task along a line take photos."""
@@ -89,8 +89,8 @@ def _action_asked(task: Element) -> str:
     """Return the action that a survey task really does; empty for none."""
     if not _is_survey(task):
         return ""
-    is_road = any(name == "RoadTask" for _, name in metaclass_of(task).ancestry)
-    without_photos = is_road and all(number(task, name) is None for name in SPACED)
+    along_path = is_kind(task, *PATH_PHOTO_TASK)
+    without_photos = along_path and all(number(task, name) is None for name in SPACED)
     return "" if without_photos else text(task, "actionName")
 
 

@@ -1,4 +1,4 @@
-"""What this plug-in contributes: six types of task and landmarks: their rules, constraints and looks."""
+"""What this plug-in contributes: eight types of task and landmarks: their rules, constraints and looks."""
 
 from __future__ import annotations
 
@@ -43,12 +43,13 @@ def mmrs_fixes() -> tuple[Fix, ...]:
 @hookimpl
 def mmrs_rules() -> tuple[Rule, ...]:
     """Contribute what survey tasks are made of."""
+    from mmrs_survey.around import ORBIT_RULE, PERIMETER_RULE
     from mmrs_survey.grids import PHOTO_GRID_RULE
     from mmrs_survey.measuring import MEASURE_RULE
     from mmrs_survey.points import POINT_RULES
     from mmrs_survey.roads import ROAD_RULE
 
-    return (PHOTO_GRID_RULE, *POINT_RULES, ROAD_RULE, MEASURE_RULE)
+    return (PHOTO_GRID_RULE, *POINT_RULES, ROAD_RULE, PERIMETER_RULE, ORBIT_RULE, MEASURE_RULE)
 
 
 @hookimpl
@@ -77,6 +78,29 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             "≋",
             ("altitude", "width", "inverted"),
             usual_for="line",
+            height="altitude",
+            device="deviceId",
+            action="actionName",
+        ),
+        MapSymbol(
+            names.PERIMETER_TASK,
+            "perimeter",
+            "#7a2e5d",
+            "▢",
+            ("altitude", "distance", "topAltitude", "photoDistance"),
+            usual_for="structure",
+            initial={"distance": 10.0, "photoDistance": 5.0},
+            height="altitude",
+            device="deviceId",
+            action="actionName",
+        ),
+        MapSymbol(
+            names.ORBIT_TASK,
+            "orbit",
+            "#1f6f78",
+            "◯",
+            ("radius", "altitude", "photoDistance"),
+            initial={"radius": 20.0, "photoDistance": 5.0},
             height="altitude",
             device="deviceId",
             action="actionName",

@@ -13,7 +13,9 @@ from mmrs_survey import names
 ABOVE_ZERO = {
     names.PHOTO_TASK: ("footprintWidth", "footprintLength", "groundResolution", "speed", "blur"),
     names.PHOTO_GRID_TASK: ("gridResolution",),
-    names.ROAD_TASK: ("photoDistance",),
+    names.PATH_PHOTO_TASK: ("photoDistance",),
+    names.PERIMETER_TASK: ("layers",),
+    names.ORBIT_TASK: ("radius", "turns"),
     names.OBSERVE_TASK: ("duration",),
     names.MEASURE_TASK: ("spacing",),
 }

@@ -49,6 +49,17 @@ TASKS = {
         "photoDistance": 25.0,
         "actionName": "TakePicture",
     },
+    "perimeter": {
+        "initialPosition": (-10.0, 0.0, 0.0),
+        "shell": FIELD,
+        "altitude": 20.0,
+        "topAltitude": 26.0,
+        "distance": 8.0,
+        "faceBorder": True,
+        "photoDistance": 25.0,
+        "actionName": "TakePicture",
+    },
+    "orbit": {"point": POINT, "radius": 15.0, "turns": 2, "photoDistance": 9.0, "actionName": "TakePicture"},
     "measure": {"points": LINE, "spacing": 20.0, "actionName": "Sample"},
 }
 

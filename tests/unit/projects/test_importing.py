@@ -118,7 +118,6 @@ def test_features_become_what_their_role_words_and_shape_say(feature, became, by
         (drawn("x", (5, 5), radius=1e6), "radius 1e+06 m: expected one above 0 and below 100000 m"),
         (drawn("x", (5, 5), radius=np.inf), "radius inf m: expected"),
         (drawn("Kite", (5, 5), role=Role.CHOSEN_RALLY_POINT), "it was chosen from the emergency areas"),
-        (square("x", role=Role.STRUCTURE), "no usual task goes round a structure; --as 'x'=task makes"),
         (square("x", role=Role.ELEMENT), "a context element of no type that is installed"),
         (drawn("home", (20, 0)), "no robot begins there; --robot NAME=TYPE adds one that does"),
         (

@@ -101,6 +101,23 @@ def test_settings_of_a_survey_become_attributes(settings, attributes):
     assert area.properties == {"swathAngle": 0, **attributes}
 
 
+def test_a_structure_scan_has_layers_around_it():
+    settings = {"ScanBottomAlt": 4, "Layers": 3, "StartFromTop": True, "StructureHeight": 15}
+    camera = {"DistanceToSurface": 20, "AdjustedFootprintFrontal": 6, "FrontalOverlap": 70, "SideOverlap": 60}
+    scan = survey("StructureScan", polygon=FIELD, CameraCalc=camera, **settings)
+    _, structure = read_plan(plan(scan), "a.plan").features
+    assert structure.properties == {
+        "StructureHeight": 15,
+        "distance": 20,
+        "sideOverlap": 0.7,
+        "frontOverlap": 0.6,
+        "layers": 3,
+        "startFromTop": True,
+        "altitude": 7,
+        "topAltitude": 19,
+    }
+
+
 def test_items_that_are_no_shape_are_left_out():
     left_out = {each.what: each.reason for each in read_plan(PLAN, "a.plan").left_out}
     assert left_out == {

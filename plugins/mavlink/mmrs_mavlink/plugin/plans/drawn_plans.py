@@ -25,10 +25,21 @@ SETTINGS = {
     "angle": ("swathAngle", 1.0),
 }
 """The attribute that a setting is, and what it is multiplied by."""
+AROUND = {
+    "DistanceToSurface": ("distance", 1.0),
+    "ImageDensity": ("groundResolution", 0.01),
+    "FrontalOverlap": ("sideOverlap", 0.01),
+    "SideOverlap": ("frontOverlap", 0.01),
+    "Layers": ("layers", 1),
+}
+"""The same for structure scans, whose layers are as far apart as photos are high."""
+BOTTOM, LAYER = "ScanBottomAlt", "AdjustedFootprintFrontal"
+"""Height of the bottom of a structure, and of a layer."""
 FLAGS: Mapping[str, tuple[str, Property]] = {
     "Refly90Degrees": ("crossHatch", True),
     "flyAlternateTransects": ("alternateSwaths", True),
     "HoverAndCapture": ("capture", "AT_STOPS"),
+    "StartFromTop": ("startFromTop", True),
 }
 """The attribute that a setting is where it is on, and its value."""
 ENTRY, ENTRIES = "entryLocation", (315.0, 45.0, 225.0, 135.0)
@@ -44,7 +55,18 @@ COMPLEX = {
     "StructureScan": (Geometry.AREA, Role.STRUCTURE, "polygon"),
 }
 SHAPES = ("polygon", "polyline", "TransectStyleComplexItem", "type", "complexItemType", "CameraCalc")
-TAKEN = {*SETTINGS, *FLAGS, CORRIDOR_ENTRY, ENTRY, "DistanceMode", "DistanceToSurfaceRelative", "version"}
+TAKEN = {
+    *SETTINGS,
+    *AROUND,
+    *FLAGS,
+    BOTTOM,
+    LAYER,
+    CORRIDOR_ENTRY,
+    ENTRY,
+    "DistanceMode",
+    "DistanceToSurfaceRelative",
+    "version",
+}
 OURSELVES = "MMRS"
 """The ground station of plans that MMRS writes."""
 MAIN = {"fileType", "version", "groundStation", "mission", "geoFence", "rallyPoints"}
@@ -141,7 +163,8 @@ class _PlanReader:
             if kind in COMPLEX:
                 geometry, complex_role, key = COMPLEX[kind]
                 settings = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
-                properties = {k: v for k, v in settings.items() if k not in TAKEN} | _attributes(settings)
+                properties = {k: v for k, v in settings.items() if k not in TAKEN}
+                properties |= _around(settings) if complex_role is Role.STRUCTURE else _attributes(settings)
                 ring, what = self._list(item, key), f"{complex_role.value} {number}"
                 reference = HeightReference.NONE
                 if _above_sea(settings) and "altitude" in properties:
@@ -195,11 +218,7 @@ def _flat(item: Mapping[str, object]) -> Iterator[tuple[str, object]]:
 
 def _attributes(settings: Mapping[str, Property]) -> dict[str, Property]:
     """Return settings of a survey or corridor as attributes of tasks, in SI units and fractions."""
-    numbers = {key: value for key in SETTINGS if isinstance(value := settings.get(key), int | float)}
-    found: dict[str, Property] = {
-        SETTINGS[key][0]: round(value * SETTINGS[key][1], 6) for key, value in numbers.items()
-    }
-    found |= dict(FLAGS[key] for key in FLAGS if settings.get(key) is True)
+    found = _converted(settings, SETTINGS)
     if settings.get(CORRIDOR_ENTRY) in AT_LAST_POINT:
         found["inverted"] = True
     entry, angle = settings.get(ENTRY), found.get("swathAngle", 0.0)
@@ -207,6 +226,29 @@ def _attributes(settings: Mapping[str, Property]) -> dict[str, Property]:
         turned = angle - 180.0 * round(angle / 180.0) if abs(angle) > 90.0 else angle
         found["startCorner"] = CORNERS[int((ENTRIES[entry] + turned) % 360.0 // 90.0)]
     return found
+
+
+def _around(settings: Mapping[str, Property]) -> dict[str, Property]:
+    """Return settings of a structure scan as attributes of a task around it."""
+    found = _converted(settings, AROUND)
+    bottom, layer, layers = (settings.get(key) for key in (BOTTOM, LAYER, "Layers"))
+    if isinstance(bottom, int | float):
+        rise = float(layer) if isinstance(layer, int | float) else 0.0
+        found["altitude"] = lowest = round(bottom + rise / 2.0, 6)
+        if isinstance(layers, int) and layers > 1 and rise > 0.0:
+            found["topAltitude"] = round(lowest + (layers - 1) * rise, 6)
+    return found
+
+
+def _converted(
+    settings: Mapping[str, Property], attributes: Mapping[str, tuple[str, float]]
+) -> dict[str, Property]:
+    """Return the settings that are attributes, and flags that are set."""
+    numbers = {key: value for key in attributes if isinstance(value := settings.get(key), int | float)}
+    found: dict[str, Property] = {
+        attributes[key][0]: round(value * attributes[key][1], 6) for key, value in numbers.items()
+    }
+    return found | dict(FLAGS[key] for key in FLAGS if settings.get(key) is True)
 
 
 def _above_sea(settings: Mapping[str, Property]) -> bool:

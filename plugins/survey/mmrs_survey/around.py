@@ -1,0 +1,125 @@
+"""Rules for photos from the side: along the border of an area, layer by layer, and round a point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, cos, dist, hypot, pi, sin
+
+import shapely
+
+from mmrs_core.contributions.rules import Rule
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.geometry.polygons import parts, polygon
+from mmrs_core.planning.devices import carried
+from mmrs_core.planning.open_lines import work_along
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights
+from mmrs_core.scene import Look, Part, Point, Position, Robot, Scene, Stroke, Task, Work
+from mmrs_core.scene.attributes import flag, number, position, ring, text
+from mmrs_survey.names import ORBIT_TASK, PERIMETER_TASK
+from mmrs_survey.spacing import photographed, shots_of
+
+CORNERS = 36
+"""Corners of an orbit: its path is nearer to the point by 0.4 % of the radius at most."""
+
+MITRE = 2.0
+"""Distances from the border by which a path around a sharp corner may stick out."""
+
+FAR = 30.0
+"""Lengths of a side at which a camera aims beyond it, so that it keeps its direction within a degree."""
+
+
+def perimeter_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return a stroke along each side of the border, layer by layer."""
+    part, aside = task.part, flag(task.part, "faceBorder")
+    altitude, distance = number(part, "altitude"), number(part, "distance") or 0.0
+    if altitude is None:
+        raise InfeasibleError("altitude is missing")
+    initial = position(part, "initialPosition")
+    entry = (initial[0], initial[1], altitude)
+    shots = shots_of(part, robot, abs(distance) if aside else altitude, sideways=aside)
+    heights = _layers(part, altitude, shots.strip)
+    refuse_heights(robot, [entry, *((*entry[:2], up) for up in heights)])
+    refuse_blocked(robot, scene, (entry,), "the initial position")
+    sides = list(pairwise(_path_along(part, distance, entry[:2])))
+    lines = [
+        (
+            f"side {number} of layer {layer}" if len(heights) > 1 else f"side {number}",
+            ((*begin, up), (*end, up)),
+        )
+        for layer, up in enumerate(heights, 1)
+        for number, (begin, end) in enumerate(sides, 1)
+    ]
+    device = shots.camera.id if shots.camera else carried(robot.type, text(part, "deviceId"))
+    right = 1.0 if flag(part, "clockwise") == (distance >= 0.0) else -1.0
+
+    def stroke(_: str, line: tuple[Position, ...]) -> Stroke:
+        made = photographed(part, line, shots)
+        return replace(made, look=Look(_beside(line, right * FAR), device)) if aside else made
+
+    work = work_along(scene, robot, lines, stroke, rule="perimeter")
+    return replace(work, entry=entry, notes=shots.capture.notes)
+
+
+def _layers(part: Part, lowest: float, strip: float | None) -> list[float]:
+    """Return the heights of layers, in the order in which they are flown."""
+    highest, wanted = number(part, "topAltitude"), number(part, "layers")
+    rise = 0.0 if highest is None else max(0.0, highest - lowest)
+    count = int(wanted) if wanted is not None else 1 + ceil(rise / (strip or rise or 1.0) - 1e-9)
+    step = rise / max(1, count - 1)
+    heights = [lowest + index * step for index in range(count)]
+    return heights[::-1] if flag(part, "startFromTop") else heights
+
+
+def _path_along(part: Part, distance: float, start: Point) -> list[Point]:
+    """Return the closed path at a distance outside of a border, from its corner nearest to the start."""
+    grown = shapely.buffer(polygon(ring(part, "shell")), distance, join_style="mitre", mitre_limit=MITRE)
+    found = parts(grown)
+    if not found:
+        raise InfeasibleError(f"nothing of the area is {-distance:g} m from its border")
+    corners = [(x, y) for x, y in found[0].exterior.coords[:-1]]
+    if found[0].exterior.is_ccw == flag(part, "clockwise"):
+        corners = corners[::-1]
+    first = min(range(len(corners)), key=lambda index: dist(corners[index], start))
+    return [*corners[first:], *corners[: first + 1]]
+
+
+def _beside(line: tuple[Position, ...], far: float) -> Position:
+    """Return a point right of the middle of a line, so many of its lengths away; left: negative."""
+    (x, y, up), (east, north, _) = line[0], line[-1]
+    return ((x + east) / 2 + far * (north - y), (y + north) / 2 - far * (east - x), up)
+
+
+def orbit_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return circles around the point, which the camera looks at."""
+    part, centre = task.part, position(task.part, "point")
+    up, radius = number(part, "altitude"), number(part, "radius") or 0.0
+    up = centre[2] if up is None else up
+    if not radius > 0.0:
+        raise InfeasibleError("a radius above zero is missing")
+    shots = shots_of(part, robot, hypot(radius, up - centre[2]), sideways=True)
+    home = scene.robots[0].home if scene.robots else robot.home
+    line = tuple(_circle(part, centre, radius, up, home))
+    refuse_heights(robot, line[:1])
+    device = shots.camera.id if shots.camera else carried(robot.type, text(part, "deviceId"))
+
+    def stroke(_: str, line: tuple[Position, ...]) -> Stroke:
+        return replace(photographed(part, line, shots), look=Look(centre, device))
+
+    work = work_along(scene, robot, [("the orbit", line)], stroke, rule="orbit")
+    return replace(work, notes=shots.capture.notes)
+
+
+def _circle(part: Part, centre: Position, radius: float, up: float, home: Position) -> Iterator[Position]:
+    """Yield the corners of orbits, beginning on the side of the team's home."""
+    away = complex(home[0] - centre[0], home[1] - centre[1]) or 1j
+    begin, turn = away / abs(away), -1.0 if flag(part, "clockwise") else 1.0
+    for index in range(int(number(part, "turns") or 1) * CORNERS + 1):
+        angle = turn * index * 2.0 * pi / CORNERS
+        place = radius * begin * complex(cos(angle), sin(angle))
+        yield (centre[0] + place.real, centre[1] + place.imag, up)
+
+
+PERIMETER_RULE = Rule("perimeter", PERIMETER_TASK, perimeter_work)
+ORBIT_RULE = Rule("orbit", ORBIT_TASK, orbit_work)

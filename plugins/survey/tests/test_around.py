@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+from math import dist
+
+import pytest
+import shapely
+from mmrs_survey.around import orbit_work, perimeter_work
+
+from mmrs_core.errors import InfeasibleError
+
+SHELL = ((0.0, 0.0, 0.0), (40.0, 0.0, 0.0), (40.0, 20.0, 0.0), (0.0, 20.0, 0.0))
+
+
+def perimeter(task, **more):
+    given = {
+        "initialPosition": (-10.0, 0.0, 0.0),
+        "shell": SHELL,
+        "altitude": 10.0,
+        "distance": 8.0,
+        "clockwise": True,
+        "faceBorder": True,
+        "actionName": "TakePicture",
+    }
+    return task("PerimeterTask", **{**given, **more})
+
+
+def test_a_perimeter_goes_around_at_its_distance_and_faces_each_side(robot, scene, task):
+    work = perimeter_work(perimeter(task, photoDistance=10.0), robot(), scene())
+    area = shapely.Polygon([point[:2] for point in SHELL])
+    assert [stroke.points[0] for stroke in work.strokes] == [
+        (-8.0, -8.0, 10.0),
+        (-8.0, 28.0, 10.0),
+        (48.0, 28.0, 10.0),
+        (48.0, -8.0, 10.0),
+    ]
+    for stroke in work.strokes:
+        line = shapely.LineString([point[:2] for point in stroke.points])
+        view = shapely.LineString([line.centroid.coords[0], stroke.look.at[:2]])
+        assert line.distance(area) == 8.0
+        assert view.crosses(area)
+        assert stroke.look.at[2] == 10.0
+
+
+def test_a_perimeter_inside_turned_round_faces_the_border_too(robot, scene, task):
+    work = perimeter_work(perimeter(task, distance=-5.0, clockwise=False), robot(), scene())
+    first = work.strokes[0]
+    assert first.points == ((5.0, 5.0, 10.0), (35.0, 5.0, 10.0))
+    assert first.look.at[:2] == (20.0, 5.0 - 30.0 * 30.0)
+    with pytest.raises(InfeasibleError, match="nothing of the area is 11 m from its border"):
+        perimeter_work(perimeter(task, distance=-11.0), robot(), scene())
+
+
+@pytest.mark.parametrize(
+    ("more", "heights"),
+    [
+        ({}, [10.0]),
+        ({"topAltitude": 20.0}, [10.0, 20.0]),
+        ({"topAltitude": 20.0, "layers": 3, "startFromTop": True}, [20.0, 15.0, 10.0]),
+        (
+            {"topAltitude": 20.0, "footprintWidth": 6.0, "footprintLength": 5.0, "sideOverlap": 0.2},
+            [10.0, 13.333, 16.667, 20.0],
+        ),
+    ],
+)
+def test_layers_are_spread_evenly_as_near_as_they_must_be(robot, scene, task, more, heights):
+    work = perimeter_work(perimeter(task, **more), robot(), scene())
+    assert list(dict.fromkeys(round(stroke.points[0][2], 3) for stroke in work.strokes)) == heights
+
+
+def test_every_part_of_a_wall_is_photographed_with_the_overlaps(robot, scene, task):
+    seen = {"footprintWidth": 6.0, "footprintLength": 5.0, "frontOverlap": 0.5, "sideOverlap": 0.2}
+    work = perimeter_work(perimeter(task, topAltitude=20.0, **seen), robot(), scene())
+    wall = shapely.box(0.0, 8.0, 40.0, 22.0)
+    shown = [
+        shapely.box(x - 1.5, stroke.points[0][2] - 2.0, x + 1.5, stroke.points[0][2] + 2.0)
+        for stroke in work.strokes
+        if {point[1] for point in stroke.points} == {-8.0}
+        for x in (
+            stroke.points[0][0] + action.at * (1 if stroke.points[1][0] > 0 else -1)
+            for action in stroke.actions
+        )
+    ]
+    assert shapely.difference(wall, shapely.union_all(shown, grid_size=1e-6)).area == pytest.approx(0.0)
+
+
+def test_an_orbit_keeps_its_radius_begins_at_home_and_looks_at_the_point(robot, scene, task):
+    asked = {"point": (30.0, 0.0, 5.0), "radius": 12.0, "altitude": 9.0, "clockwise": True, "turns": 2}
+    (stroke,) = orbit_work(
+        task("OrbitTask", photoDistance=6.0, actionName="TakePicture", **asked), robot(), scene()
+    ).strokes
+    assert stroke.points[0] == pytest.approx((18.0, 0.0, 9.0))
+    assert stroke.points[9] == pytest.approx((30.0, 12.0, 9.0))
+    assert {round(dist(point[:2], (30.0, 0.0)), 6) for point in stroke.points} == {12.0}
+    assert len(stroke.points) == 73
+    assert (stroke.look.at, stroke.look.device) == ((30.0, 0.0, 5.0), "camera")
+    assert stroke.actions[-1].at == pytest.approx(stroke.length)
+
+
+def test_what_areas_are_in_the_way_of_is_left_out_of_an_orbit(robot, scene, task):
+    asked = task("OrbitTask", point=(30.0, 0.0, 5.0), radius=12.0, turns=1)
+    work = orbit_work(asked, robot(), scene((42.0, 0.0, 2.0, 90.0)))
+    assert len(work.gaps) == 1
+    assert len(work.strokes) == 2
