@@ -45,6 +45,10 @@ class Guidance(Protocol):
         """Command a position and a heading (radians clockwise from north)."""
         ...
 
+    def has_settled(self, place: Place) -> bool:
+        """Return whether the vehicle comes no nearer to a place that it aims at; asked with each position."""
+        ...
+
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of the command to climb to a height above home."""
         ...
@@ -94,6 +98,10 @@ class ArduPilotGuidance:
         if self._link.profile.heads_apart and yaw != self._yaw:
             command(self._link, mavlink.MAV_CMD_CONDITION_YAW, degrees(yaw) % 360.0)
             self._yaw = yaw
+
+    def has_settled(self, place: Place) -> bool:
+        """Return False: it comes to its targets."""
+        return False
 
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF."""

@@ -8,6 +8,10 @@ commanded speed: OFFBOARD ignores DO_CHANGE_SPEED.
 Heights of set-points are above sea level: with MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, PX4 1.13 to 1.15 put
 the set-point on the wrong side of home wherever home is not where the estimator began
 (``mavlink_receiver.cpp``, ``handle_message_set_position_target_global_int``).
+
+It may settle beside its target, and report that it moves: in its own simulation, whose accelerometers are
+noisy, it estimates speeds of 0.3 to 0.85 m/s for ten seconds and more while its position hardly changes. Its
+controller answers an error of its speed by one of its place, times MPC_XY_P: 0.5 to 1.2 m.
 """
 
 from __future__ import annotations
@@ -33,6 +37,9 @@ LEAST_PAUSE = 0.01
 
 AHEAD_SECONDS = 1.5
 """For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
+
+WANDER, WANDERING = 1.0, 3.0
+"""Metres from the target, and seconds within these, from which it has settled whatever speed it estimates."""
 
 FRESH_SECONDS = 1.0
 """In which a position comes from a vehicle that tells five a second."""
@@ -76,6 +83,12 @@ class Stream:
                 self._running.set()
             self._running = None
 
+    @property
+    def is_there(self) -> bool:
+        """Return whether the set-point has come to its target."""
+        with self._lock:
+            return self._at is not None and self._at == self._target
+
     def aim(self, place: Place, yaw: float, speed: float | None) -> None:
         """Move to a place from now on; None for the speed: as fast as the vehicle can."""
         with self._lock:
@@ -112,6 +125,8 @@ class Px4Guidance:
         self._link = link
         self._telemetry = telemetry
         self._stream = Stream(link, telemetry)
+        self._near_since: float | None = None
+        self._aimed_at: Place | None = None
 
     def begin_guiding(self) -> None:
         """Send set-points for long enough that OFFBOARD is granted."""
@@ -126,6 +141,17 @@ class Px4Guidance:
     def aim(self, place: Place, yaw: float, speed: float | None) -> None:
         """Move the set-point towards a place."""
         self._stream.aim(place, yaw, speed)
+        if place != self._aimed_at:
+            self._aimed_at, self._near_since = place, None
+
+    def has_settled(self, place: Place) -> bool:
+        """Return whether it has been near to a place for some time, to which its set-point has come."""
+        now = self._telemetry.time()
+        if not self._stream.is_there or distance(self._telemetry.here(), place) > WANDER:
+            self._near_since = None
+        elif self._near_since is None:
+            self._near_since = now
+        return self._near_since is not None and now - self._near_since >= WANDERING
 
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF, straight up from here.

@@ -207,6 +207,8 @@ class Steering:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""
         here = self._telemetry.here()
         away = distance(here, place)
+        if self._mode_control.guidance.has_settled(place):
+            return True
         if away > self._acceptance:
             return False
         if self._telemetry.speed() <= self._link.profile.still:

@@ -29,9 +29,10 @@ OFFBOARD, LOITER, MISSION, TAKE_OFF, POSITION = 0x6_0000, 0x304_0000, 0x404_0000
 GLOBAL_INT = 5
 
 
-def here(height: float = 20.0):
-    place = (423_700_000, 133_500_000, 700_000 + round(height * 1000), round(height * 1000))
-    return mavlink.MAVLink_global_position_int_message(0, *place, 0, 0, 0, 9000)
+def here(height: float = 20.0, north: float = 0.0, seconds: float = 0.0):
+    latitude = 423_700_000 + round(north * 1e7 / 111_319.49)
+    place = (latitude, 133_500_000, 700_000 + round(height * 1000), round(height * 1000))
+    return mavlink.MAVLink_global_position_int_message(round(seconds * 1e3), *place, 0, 0, 50, 9000)
 
 
 class Autopilot:
@@ -130,6 +131,21 @@ def test_without_a_speed_the_set_point_is_the_target(px4):
     mode_control.enter(modes.GUIDED)
     mode_control.guidance.aim(NORTH, 0.0, None)
     eventually(lambda: autopilot.points[-1].lat_int == 423_710_000)
+
+
+@pytest.mark.parametrize(("north", "settled"), [(0.8, True), (1.2, False)])
+def test_a_vehicle_settles_near_its_target_although_it_estimates_that_it_moves(px4, north, settled):
+    mode_control, telemetry, autopilot = px4
+    guidance, place = mode_control.guidance, Geographic(42.37, 13.35, 20.0)
+    mode_control.enter(modes.GUIDED)
+    found = []
+    for seconds in (0.0, 2.0, 3.5, 4.0):
+        guidance.aim(place if seconds < 4.0 else NORTH, 0.0, None)  # again, as if it might be lost
+        autopilot.wire.say(here(north=north, seconds=seconds))
+        eventually(lambda: telemetry.time() == seconds)  # noqa: B023
+        eventually(lambda: autopilot.points[-1].lat_int == (423_700_000 if seconds < 4.0 else 423_710_000))  # noqa: B023
+        found.append(guidance.has_settled(place))
+    assert found == [False, False, settled, False]
 
 
 def assert_silent(autopilot) -> None:
