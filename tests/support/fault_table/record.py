@@ -152,24 +152,33 @@ def ending(vehicle: SimulatedVehicle, since: Struck) -> str:
 def stops_short(vehicle: SimulatedVehicle, since: Struck) -> bool:
     """Return whether a vehicle is no farther from where it answered than it must be to come to a halt.
 
-    From a speed v it takes v²/2a to brake, and if it falls from a height h, v·√(2h/g) to the ground.
+    Its acceleration changes by its jerk: it speeds up until that is gone, and takes an S-curve to brake then;
+    if it falls from a height h at a speed v, it goes v·√(2h/g) to the ground.
     """
     pilot = vehicle.autopilot
-    (north, east, up), pace = _then(vehicle, since)
-    room = pace * pace / (2.0 * pilot.body.figures.acceleration)
+    (north, east, up), pace, gain = _then(vehicle, since)
+    figures = pilot.body.figures
+    seconds, fastest = gain / figures.jerk, pace + gain * gain / (2.0 * figures.jerk)
+    room = seconds * (pace + gain * seconds / 3.0)
+    room += fastest / 2.0 * (fastest / figures.acceleration + figures.acceleration / figures.jerk)
     if since.falls:
         room = pace * sqrt(2.0 * up / GRAVITY)
     return hypot(pilot.body.position[0] - north, pilot.body.position[1] - east) <= room + MARGIN
 
 
-def _then(vehicle: SimulatedVehicle, since: Struck) -> tuple[tuple[float, float, float], float]:
-    """Return where a vehicle was when it answered, and its speed over the ground then."""
+def _then(vehicle: SimulatedVehicle, since: Struck) -> tuple[tuple[float, float, float], float, float]:
+    """Return where a vehicle was when it answered, its speed over the ground then, and how that grew."""
     track, at = vehicle.autopilot.track, since.time + (answered(vehicle, since) or 0.0)
     index = min(bisect_left(track, (at,)), len(track) - 1)
     if since.falls or index < 1:
         index = max(1, bisect_left(track, (since.time,)) - 1)
-    (t0, n0, e0, _), (t1, n1, e1, u1) = track[index - 1], track[index]
-    return (n1, e1, u1), hypot(n1 - n0, e1 - e0) / max(1e-3, t1 - t0)
+    first, before, (now, north, east, up) = track[max(0, index - 2)], track[index - 1], track[index]
+    paces = [_pace(*pair) for pair in ((first, before), (before, track[index]))]
+    return (north, east, up), paces[1], max(0.0, paces[1] - paces[0]) / max(1e-3, now - before[0])
+
+
+def _pace(before: tuple[float, ...], after: tuple[float, ...]) -> float:
+    return hypot(after[1] - before[1], after[2] - before[2]) / max(1e-3, after[0] - before[0])
 
 
 WORDS = {
