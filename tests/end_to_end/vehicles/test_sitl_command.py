@@ -13,10 +13,13 @@ import time
 import pytest
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from real_flights.routes import COPTER, Route, on_px4, routes
 from warm_python import python
 
 from mmrs_core.cli import run
+from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
+from mmrs_mavlink.commands.fleet import members_of
 
 pytestmark = pytest.mark.real_time("faults")
 
@@ -124,6 +127,13 @@ def test_a_wrong_command_line_is_a_usage_error(arguments, complaint, capsys):
     printed = capsys.readouterr()
     assert printed.out == ""
     assert complaint in printed.err
+
+
+@pytest.mark.parametrize(("of", "firmware"), [(lambda models: models, "ardupilot"), (on_px4, "px4")])
+def test_a_vehicle_has_the_autopilot_that_its_robot_type_states(tmp_path, of, firmware):
+    of(routes(Route("Alba", COPTER, ((0.0, 30.0, 12.0),), 5.0)))(tmp_path / "models")
+    (alba,) = members_of(Settings(), tmp_path / "models" / "behaviour.xmi").values()
+    assert alba.firmware == firmware
 
 
 IN_A_TERMINAL = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))"

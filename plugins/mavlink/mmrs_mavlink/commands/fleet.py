@@ -16,9 +16,9 @@ from mmrs_core.cli.output import tell
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
-from mmrs_mavlink.plugin.vehicles import profile_of, uncarried
+from mmrs_mavlink.plugin.vehicles import autopilot_of, profile_of, uncarried
 from mmrs_mavlink.sitl.parameters import defaults
-from mmrs_mavlink.sitl.settings import Settings
+from mmrs_mavlink.sitl.settings import IMITATED, Settings
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
 from mmrs_runtime.sights import Sight
 
@@ -59,7 +59,10 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
     for each, profile, place, (east, north) in zip(crew.members, profiles, places, homes, strict=True):
         near = tuple(replace(sight, north=sight.north - north, east=sight.east - east) for sight in sights)
         assert profile is not None
-        made[each.name] = _with_battery(Settings(profile.rehearsed_as, *place, sights=near), each)
+        named = autopilot_of(each.type, extensions)
+        firmware = named if (profile.rehearsed_as, named) in IMITATED else profile.rehearsed_with
+        vehicle = Settings(profile.rehearsed_as, *place, firmware=firmware, sights=near)
+        made[each.name] = _with_battery(vehicle, each)
     return made
 
 

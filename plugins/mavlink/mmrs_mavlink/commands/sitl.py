@@ -30,14 +30,14 @@ def sitl(
         ),
     ],
     firmware: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--firmware",
             metavar="ardupilot|px4",
-            help="Autopilot to imitate; px4 supports copters only.",
+            help="Autopilot to imitate; px4 supports copters only. Default: by robot type.",
             autocompletion=one_of("ardupilot", "px4"),
         ),
-    ] = "ardupilot",
+    ] = None,
     port: Annotated[
         int, typer.Option("--port", metavar="PORT", min=1, max=65_535, help="UDP port of the first vehicle.")
     ] = FIRST_PORT,
