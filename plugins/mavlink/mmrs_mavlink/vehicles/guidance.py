@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees
+from math import degrees, inf
 from typing import Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -41,8 +41,15 @@ class Guidance(Protocol):
         """Stop steering: another mode was entered, or the vehicle is under external control."""
         ...
 
-    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
-        """Command a position and a heading (radians clockwise from north)."""
+    def aim(self, place: Place, yaw: float, speed: float | None, turn_rate: float = inf) -> None:
+        """Command a position and a heading (radians clockwise from north).
+
+        Args:
+            place: where to.
+            yaw: the heading.
+            speed: metres per second; None: as fast as the vehicle can.
+            turn_rate: radians per second, at most.
+        """
         ...
 
     def has_settled(self, place: Place) -> bool:
@@ -87,8 +94,10 @@ class ArduPilotGuidance:
     def end_guiding(self) -> None:
         """Return at once: a target that was sent is forgotten with the mode."""
 
-    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
+    def aim(self, place: Place, yaw: float, speed: float | None, turn_rate: float = inf) -> None:
         """Send a target; the speed needs another command, and so does the heading of some vehicles.
+
+        They turn by their own parameter.
 
         Raises:
             RefusedError: the vehicle does not take the heading.

@@ -77,7 +77,12 @@ class MavlinkVehicle(Vehicle):
         self._mode_control = ModeControl(link, self._telemetry)
         self._acceptance = travel.acceptance if acceptance is None else acceptance
         self._steering = Steering(
-            link, self._telemetry, self._mode_control, self._acceptance, travel.turning_radius
+            link,
+            self._telemetry,
+            self._mode_control,
+            self._acceptance,
+            travel.turning_radius,
+            travel.turn_rate,
         )
         self._travel = travel
         self._home = home

@@ -3,7 +3,9 @@
 OFFBOARD takes only a stream of set-points, which must have begun a second before the mode is
 requested, and ends the mode when it stops (https://docs.px4.io, "Offboard Mode"). So a thread of its
 own sends them, at 10 Hz, until another mode has been entered. A set-point moves along the leg at the
-commanded speed: OFFBOARD ignores DO_CHANGE_SPEED.
+commanded speed: OFFBOARD ignores DO_CHANGE_SPEED. So does its heading at the turn rate: only its own modes
+obey MPC_YAWRAUTO_MAX, and a heading that is set at once is turned to at up to MC_YAWRATE_MAX, 200 degrees per
+second.
 
 Heights of set-points are above sea level: with MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, PX4 1.13 to 1.15 put
 the set-point on the wrong side of home wherever home is not where the estimator began
@@ -11,13 +13,13 @@ the set-point on the wrong side of home wherever home is not where the estimator
 
 It may settle beside its target, and report that it moves: in its own simulation, whose accelerometers are
 noisy, it estimates speeds of 0.3 to 0.85 m/s for ten seconds and more while its position hardly changes. Its
-controller answers an error of its speed by one of its place, times MPC_XY_P: 0.5 to 1.2 m.
+controller answers an error of its speed by one of its place (MPC_XY_P): 0.5 to 1.4 m.
 """
 
 from __future__ import annotations
 
 import threading
-from math import nan, radians
+from math import copysign, inf, nan, pi, radians, remainder
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -38,7 +40,7 @@ LEAST_PAUSE = 0.01
 AHEAD_SECONDS = 1.5
 """For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
 
-WANDER, WANDERING = 1.0, 3.0
+WANDER, WANDERING = 1.5, 6.0
 """Metres from the target, and seconds within these, from which it has settled whatever speed it estimates."""
 
 FRESH_SECONDS = 1.0
@@ -56,8 +58,9 @@ class Stream:
         self._running: threading.Event | None = None
         self._at: Place | None = None
         self._target: Place | None = None
-        self._yaw = 0.0
+        self._yaw = self._turns_to = 0.0
         self._speed: float | None = None
+        self._turn_rate = inf
         self._moved = 0.0
 
     @property
@@ -71,7 +74,7 @@ class Stream:
             if self._running is not None:
                 return
             self._at = self._target = self._telemetry.here()
-            self._yaw = radians(self._telemetry.heading() or 0.0)
+            self._yaw = self._turns_to = radians(self._telemetry.heading() or 0.0)
             self._moved = self._link.clock.now()
             self._running = threading.Event()
             threading.Thread(target=self._send, args=(self._running,), name="set-points", daemon=True).start()
@@ -89,10 +92,11 @@ class Stream:
         with self._lock:
             return self._at is not None and self._at == self._target
 
-    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
-        """Move to a place from now on; None for the speed: as fast as the vehicle can."""
+    def aim(self, place: Place, yaw: float, speed: float | None, turn_rate: float) -> None:
+        """Move to a place, and turn, from now on; None for the speed: as fast as the vehicle can."""
         with self._lock:
-            self._target, self._yaw, self._speed = place, yaw, speed
+            self._target, self._speed = place, speed
+            self._turns_to, self._turn_rate = yaw, turn_rate
 
     def _send(self, ended: threading.Event) -> None:
         clock = self._link.clock
@@ -108,6 +112,8 @@ class Stream:
         assert self._target is not None
         passed, self._moved = now - self._moved, now
         left = distance(self._at, self._target)
+        aside, most = remainder(self._turns_to - self._yaw, 2.0 * pi), self._turn_rate * passed
+        self._yaw = self._yaw + copysign(most, aside) if abs(aside) > most else self._turns_to
         if self._speed is None or left <= self._speed * passed:
             self._at = self._target
         else:
@@ -138,9 +144,10 @@ class Px4Guidance:
         """End the stream."""
         self._stream.end()
 
-    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
-        """Move the set-point towards a place."""
-        self._stream.aim(place, yaw, speed)
+    def aim(self, place: Place, yaw: float, speed: float | None, turn_rate: float = inf) -> None:
+        """Move the set-point towards a place, and turn its heading no faster than its own modes do."""
+        turns_at = min(turn_rate, radians(self._link.profile.pacing.turn_rate))
+        self._stream.aim(place, yaw, speed, turns_at)
         if place != self._aimed_at:
             self._aimed_at, self._near_since = place, None
 

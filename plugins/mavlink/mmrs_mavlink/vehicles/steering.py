@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, degrees, hypot, nan, radians
+from math import atan2, degrees, hypot, inf, nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -71,6 +71,7 @@ class Steering:
         mode_control: ModeControl,
         acceptance: float,
         turning_radius: float = 0.0,
+        turn_rate: float | None = None,
     ) -> None:
         """Steer a vehicle by its profile.
 
@@ -80,11 +81,13 @@ class Steering:
             mode_control: of the vehicle.
             acceptance: metres from a place at which it counts as reached.
             turning_radius: of its narrowest curve, metres; 0: it turns on its own.
+            turn_rate: its type's largest, degrees per second; None where unknown.
         """
         self._link = link
         self._telemetry = telemetry
         self._mode_control = mode_control
         self._acceptance = acceptance
+        self._turn_rate = inf if turn_rate is None else radians(turn_rate)
         self._shunting = Shunting(link, telemetry, mode_control, turning_radius)
         self._yaw: float | None = None
         self._speed: float | None = None
@@ -201,7 +204,7 @@ class Steering:
         return _angle(self._yaw, _yaw(self._telemetry.here(), look)) >= CLOSE_DEGREES
 
     def _send_target(self, place: Place, yaw: float) -> None:
-        self._mode_control.guidance.aim(place, radians(yaw), self._speed)
+        self._mode_control.guidance.aim(place, radians(yaw), self._speed, self._turn_rate)
 
     def _arrived(self, place: Place, begun: Place | None) -> bool:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from contextlib import contextmanager
 from itertools import pairwise
-from math import isnan, radians
+from math import degrees, isnan, radians
 
 import pytest
 from mavlink_peer import ARDUPILOT, PX4, acknowledged, eventually, linked
@@ -133,17 +133,28 @@ def test_without_a_speed_the_set_point_is_the_target(px4):
     eventually(lambda: autopilot.points[-1].lat_int == 423_710_000)
 
 
-@pytest.mark.parametrize(("north", "settled"), [(0.8, True), (1.2, False)])
+def test_set_points_turn_at_the_turn_rate(px4):
+    mode_control, _, autopilot = px4
+    mode_control.enter(modes.GUIDED)
+    mode_control.guidance.aim(Geographic(42.37, 13.35, 20.0), radians(-60.0), None, radians(30.0))
+    begun = len(autopilot.points)
+    eventually(lambda: autopilot.points[-1].yaw == pytest.approx(radians(-60.0)), 10.0)
+    steps = [degrees(one.yaw - two.yaw) for one, two in pairwise(autopilot.points[begun + 1 : -1])]
+    assert min(steps) > 0.0
+    assert 0.5 < sum(steps) / len(steps) < 9.0
+
+
+@pytest.mark.parametrize(("north", "settled"), [(1.4, True), (1.6, False)])
 def test_a_vehicle_settles_near_its_target_although_it_estimates_that_it_moves(px4, north, settled):
     mode_control, telemetry, autopilot = px4
     guidance, place = mode_control.guidance, Geographic(42.37, 13.35, 20.0)
     mode_control.enter(modes.GUIDED)
     found = []
-    for seconds in (0.0, 2.0, 3.5, 4.0):
-        guidance.aim(place if seconds < 4.0 else NORTH, 0.0, None)  # again, as if it might be lost
+    for seconds in (0.0, 5.0, 6.5, 7.0):
+        guidance.aim(place if seconds < 7.0 else NORTH, 0.0, None)  # again, as if it might be lost
         autopilot.wire.say(here(north=north, seconds=seconds))
         eventually(lambda: telemetry.time() == seconds)  # noqa: B023
-        eventually(lambda: autopilot.points[-1].lat_int == (423_700_000 if seconds < 4.0 else 423_710_000))  # noqa: B023
+        eventually(lambda: autopilot.points[-1].lat_int == (423_700_000 if seconds < 7.0 else 423_710_000))  # noqa: B023
         found.append(guidance.has_settled(place))
     assert found == [False, False, settled, False]
 
