@@ -11,9 +11,6 @@ from math import inf
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
 
-RETURNING = 0.63
-"""Metres per second at which a robot comes back that has gone beyond its target."""
-
 
 @dataclass(frozen=True, slots=True)
 class LegTiming:
@@ -39,6 +36,7 @@ class LegTiming:
         keeps_acceleration: whether it is expected to keep the acceleration that the robot type states.
         overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
             speed, that is, seconds.
+        returning: metres per second at which it comes back then.
         spread: by which share legs take longer or shorter than expected.
         reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
@@ -65,6 +63,7 @@ class LegTiming:
     stall_within: float = inf
     keeps_acceleration: bool = True
     overshoot: float = 0.0
+    returning: float = 0.63
     spread: float = 0.0
     reporting: float = 0.0
     shunts_within: float = inf
@@ -83,7 +82,7 @@ class LegTiming:
         A robot that has gone beyond its target comes back.
         """
         beyond = self.overshoot * fastest if self.overshoot > 0.0 else 0.0
-        return self.settling + ((beyond - SETTLED) / RETURNING if beyond > SETTLED else 0.0)
+        return self.settling + ((beyond - SETTLED) / self.returning if beyond > SETTLED else 0.0)
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.

@@ -156,12 +156,14 @@ _PX4_STEP = LegTiming(
     acceleration=3.0,
     deceleration=1.5,
     jerk=4.0,
+    speed=12.0,
     climb=3.0,
     descent=1.5,
     corner_radius=0.0,
     acceptance=1.0,
-    settling=5.0,
+    settling=3.0,
     overshoot=0.31,
+    returning=0.5,
     spread=0.45,
     reporting=10.0,
 )
@@ -170,12 +172,12 @@ PX4_COPTER = AutopilotTiming(
     step=_PX4_STEP,
     mission=LegTiming(
         acceleration=3.0,
-        deceleration=1.5,
         jerk=4.0,
+        speed=12.0,
         climb=3.0,
         descent=1.5,
         corner_radius=2.0,
-        settling=1.6,
+        settling=3.3,
         spread=0.4,
         reporting=5.0,
     ),
@@ -186,11 +188,15 @@ PX4_COPTER = AutopilotTiming(
     landing_height=10.0,
     turn_rate=45.0,
 )
-"""MPC_ACC_HOR, MPC_JERK_AUTO, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_TKO_SPEED, MPC_LAND_SPEED, MPC_LAND_ALT1
-and MPC_YAWRAUTO_MAX; COM_DISARM_LAND is two of the seconds of recovery.
+"""MPC_ACC_HOR, MPC_JERK_AUTO, MPC_XY_VEL_MAX, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_TKO_SPEED,
+MPC_LAND_SPEED, MPC_LAND_ALT1 and MPC_YAWRAUTO_MAX; COM_DISARM_LAND is two of the seconds of recovery.
 
-Leg by leg it goes 0.8 to 1.8 m beyond a target at 5.2 to 5.9 m/s, and comes back at less than 0.5 m/s, while
-the speed that it estimates wanders by as much about the 0.3 m/s of standing still. So it settles for 1 to
-17.5 s, 6.9 s in the mean of 71 legs of 15 to 100 m. The last leg of a mission was reported as done up to
-3.6 s late, and a take-off 5 s late where the vehicle refused to be armed at first.
+Leg by leg it goes 0.8 to 1.8 m beyond a target at 5.2 to 5.9 m/s, 2.6 m at 9.8 m/s, and comes back at less
+than 0.5 m/s. It counts as settled once it has been within 1.5 m for 6 s (``vehicles/px4.py``). So it settled
+for 1.2 to 5.1 s at 2 m/s and for 2.8 to 8.4 s at 5 m/s. An earlier driver waited for its acceptance and
+0.3 m/s in any case, for up to 17.5 s: the speed that it estimates wanders by 0.9 m/s.
+
+On missions it brakes early for its jerk (``computeMaxSpeedFromDistance``, ``TrajMath.hpp``), which counts as
+settling. The last leg of a mission was reported as done up to 3.6 s late, and a take-off 5 s late where the
+vehicle refused to be armed at first.
 """

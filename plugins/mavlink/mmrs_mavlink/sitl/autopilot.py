@@ -22,6 +22,10 @@ NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
 SPEEDS: Mapping[str, float] = {"WPNAV_SPEED": 100.0, "WP_SPEED": 1.0, "MPC_XY_CRUISE": 1.0}
 """Parameters of the default speed, with their units in a metre per second."""
 
+LARGEST: Mapping[str, float] = {"MPC_XY_VEL_MAX": 1.0}
+"""Parameter of the only limit that a PX4 keeps in OFFBOARD, in metres per second (``_lim_vel_horizontal``,
+``PositionControl.cpp``)."""
+
 DIGICAM, TRIGGER_DISTANCE, IMAGE = 203, 206, 2000
 SHUTTER = {DIGICAM: 4, TRIGGER_DISTANCE: 2}
 """Index of the parameter that is 1 where a command takes a photo at once; IMAGE_START_CAPTURE always does."""
@@ -226,7 +230,8 @@ class SimulatedAutopilot:
         keeps = mode == "auto" and self.settings.profile.autopilot.missions.keeps_speed
         passed = self.stores[MISSION][: self.item] if keeps else []
         speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
-        body.speed = (speeds or [self.usual_speed()])[-1]
+        guided = self.px4 and mode == "guided"
+        body.speed = self._value(LARGEST) if guided else (speeds or [self.usual_speed()])[-1]
         body.climb, body.descent = self._value(self.settings.profile.climbs), self.usual_descent()
         body.turn_rate = min(self._value(self.settings.profile.yaw_rates), FASTEST_TURN)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import cos, hypot, inf, pi, radians, sin, sqrt
+from math import cos, hypot, inf, radians, sin, sqrt
 
 from mmrs_runtime.timing import LegTiming
 
@@ -24,9 +24,8 @@ SLOW, LAGGING = 0.3, 0.085
 """Speed below which it no longer aims beyond a target; and seconds of its overshoot that it does not aim at,
 since it goes so far beyond what it aims at."""
 
-UNSTEADY, SWAY, SWAY_SECONDS, AT_TARGET = 1.0, 0.4, 3.0, 0.5
-"""Seconds of settling from which a vehicle sways at its target so long; its speed then; the seconds of each
-circle; and metres from a target at which it begins to."""
+UNSTEADY = 1.0
+"""Seconds of settling from which a vehicle comes back slowly that has gone beyond its target."""
 
 DRIVING = 2.5
 """Acceleration, metres per second squared, with which it approaches commanded speeds."""
@@ -128,10 +127,8 @@ class Body:
     _legs: list[CurvedLeg] = field(default_factory=list)
     _fastest: float = 0.0
     """Largest speed since it last stood still."""
-    _settling: float | None = None
-    """Seconds until it has settled at its target; None: it has not slowed down yet."""
-    _settles_at: Vector | None = None
-    """That target."""
+    _slowed_at: Vector | None = None
+    """The target at which it has slowed down."""
     _start: Vector = STILL
     """Where the first of its legs begins."""
     _goal: Vector | None = None
@@ -238,13 +235,10 @@ class Body:
         """Approach a target, or brake, with limited acceleration and jerk."""
         self._legs.clear()
         figures, path = self.figures, plus(self._aim(target), self.position, -1.0)
-        if self._settling:
-            self._settling = max(0.0, self._settling - step)
-            if target and self.pace <= SWAY + CLOSE and self.distance_to(target) <= AT_TARGET:
-                self._sway(self._settling, step)
-                return
         level, upwards = figures.acceleration, figures.vertical_acceleration or figures.acceleration
-        pace = min(_root(hypot(*path[:2]), level, figures.jerk), self.speed)
+        returns = target is not None and target == self._slowed_at and figures.settling >= UNSTEADY
+        speed = min(self.speed, figures.returning) if returns else self.speed
+        pace = min(_root(hypot(*path[:2]), level, figures.jerk), speed)
         rate = min(_root(abs(path[2]), upwards, figures.jerk), self._rate(path[2]))
         part = pace / max(hypot(*path[:2]), CLOSE)
         wanted = (path[0] * part, path[1] * part, rate if path[2] > 0.0 else -rate)
@@ -264,20 +258,11 @@ class Body:
         if target is None or target[:2] == self.position[:2]:
             return target or self.position
         (north, east, _), pace = self.velocity, hypot(*self.velocity[:2])
-        if target != self._settles_at:
-            self._settling, self._settles_at = None, target
-        if pace <= SWAY < self._fastest and self._settling is None:
-            unsteady = self.figures.settling >= UNSTEADY
-            self._settling = self.figures.settled(self._fastest) if unsteady else 0.0
+        if pace <= SLOW < self._fastest:
+            self._slowed_at = target
         self._fastest = max(self._fastest, pace) if pace > SLOW else 0.0
         beyond = max(0.0, self.figures.overshoot - LAGGING) * self._fastest
         return plus(target, (north, east, 0.0), beyond / pace) if beyond > 0.0 else target
-
-    def _sway(self, left: float, step: float) -> None:
-        """Go round, as fast as the estimate of a vehicle wanders that settles, for what is left of that."""
-        around = 2.0 * pi * left / SWAY_SECONDS
-        self.velocity = (SWAY * sin(around), SWAY * cos(around), 0.0) if left else STILL
-        self.position, self._acceleration = plus(self.position, self.velocity, step), STILL
 
     def _drive(self, ahead: float, aside: float, up: float, turn: float, step: float) -> None:
         """Approach commanded speeds."""

@@ -86,6 +86,7 @@ _PX4: Mapping[str, float] = {
     "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
     "MPC_XY_CRUISE": 5.0,
+    "MPC_XY_VEL_MAX": 12.0,
     "TRIG_MODE": 1,
     "PD_GRIPPER_EN": 1,
 }

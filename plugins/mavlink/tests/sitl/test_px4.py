@@ -63,7 +63,7 @@ def test_offboard_is_refused_without_set_points_or_at_a_low_rate(bench, seconds)
 
 
 def test_offboard_follows_a_stream_of_set_points(offboard):
-    stream(offboard, (0.0, 20.0, 10.0), 10.0)
+    stream(offboard, (0.0, 20.0, 10.0), 14.0)
     assert offboard.pilot.body.distance_to((0.0, 20.0, 10.0)) < 0.2
 
 
