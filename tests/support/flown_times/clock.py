@@ -35,7 +35,7 @@ class Clock:
 
     def __init__(self, steps: Sequence[Step], track: Sequence[Sample], modelled: Modelled) -> None:
         """Fit the log of a robot to its track; without one, the log counts."""
-        known = list(_known(steps, track, modelled)) if track else []
+        known = _steady(list(_known(steps, track, modelled)) if track else [])
         ahead = [time - seen for time, seen in known]
         self._at = [time for time, _ in known]
         self._ahead = [median(ahead[max(0, i - 1) : i + 2]) for i in range(len(ahead))]
@@ -62,6 +62,20 @@ class Clock:
         one, two = self._at[after - 1], self._at[after]
         part = (time - one) / (two - one) if two > one else 0.0
         return time - (self._ahead[after - 1] + part * (self._ahead[after] - self._ahead[after - 1]))
+
+
+def _steady(known: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Leave out where the log's clock would run ahead, and be back at the next time: no stop was seen there.
+
+    A vehicle that turns on the spot seems to set out.
+    """
+    ahead = [time - seen for time, seen in known]
+    beside = zip(ahead[:1] + ahead, ahead, ahead[1:] + ahead[-1:], strict=False)
+    return [
+        each
+        for each, (before, here, after) in zip(known, beside, strict=False)
+        if here <= max(before, after) + STALL
+    ]
 
 
 def _late(steps: Sequence[Step], seen: Mapping[float, float]) -> Iterator[tuple[float, float]]:
