@@ -161,7 +161,7 @@ _PX4_STEP = LegTiming(
     descent=1.5,
     corner_radius=0.0,
     acceptance=1.0,
-    settling=3.0,
+    settling=2.7,
     overshoot=0.31,
     returning=0.5,
     spread=0.45,
@@ -183,7 +183,7 @@ PX4_COPTER = AutopilotTiming(
     ),
     upright=replace(_PX4_STEP, climb=1.5, settling=0.0),
     launch=6.3,
-    recovery=6.5,
+    recovery=7.3,
     landing_rate=0.7,
     landing_height=10.0,
     turn_rate=45.0,
@@ -192,9 +192,10 @@ PX4_COPTER = AutopilotTiming(
 MPC_LAND_SPEED, MPC_LAND_ALT1 and MPC_YAWRAUTO_MAX; COM_DISARM_LAND is two of the seconds of recovery.
 
 Leg by leg it goes 0.8 to 1.8 m beyond a target at 5.2 to 5.9 m/s, 2.6 m at 9.8 m/s, and comes back at less
-than 0.5 m/s. It counts as settled once it has been within 1.5 m for 6 s (``vehicles/px4.py``). So it settled
-for 1.2 to 5.1 s at 2 m/s and for 2.8 to 8.4 s at 5 m/s. An earlier driver waited for its acceptance and
-0.3 m/s in any case, for up to 17.5 s: the speed that it estimates wanders by 0.9 m/s.
+than 0.5 m/s. It counts as settled once it has been within 1.5 m for 6 s (``vehicles/px4.py``): after 1 to
+5 s at 2 m/s, 3 to 9 s at 5 m/s, and 4 to 8 s at 8 m/s. An earlier driver waited for its acceptance and
+0.3 m/s in any case, for up to 17.5 s: the speed that it estimates wanders by 0.9 m/s. A first leg begins 2 s
+late, since OFFBOARD wants set-points before.
 
 On missions it brakes early for its jerk (``computeMaxSpeedFromDistance``, ``TrajMath.hpp``), which counts as
 settling. The last leg of a mission was reported as done up to 3.6 s late, and a take-off 5 s late where the
