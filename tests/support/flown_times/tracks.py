@@ -19,13 +19,14 @@ NEAR, STILL = 0.5, 0.3
 ITEM = 0.9
 """Seconds that an item of a mission is shown at least which is a leg."""
 
-AUTO = {3, 10}
-"""Modes of ArduPilot's copters and subs, and of its rovers, in which missions are flown."""
+PX4_AUTO = 0x404_0000
+AUTO = {3, 10, PX4_AUTO}
+"""Modes of ArduPilot's copters and subs, of its rovers, and of PX4s, in which missions are flown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Where a vehicle was: east, north and up of the robot's home."""
+    """Where a vehicle was: east, north and up of the robot's home; the first item of a mission is 1."""
 
     time: float
     place: Position
@@ -56,7 +57,7 @@ def track_in(file: Path) -> list[Sample]:
             hypot(each["vx"], each["vy"], each["vz"]),
             bool(each["armed"]),
             int(each["mode"]),
-            int(each["seq"]),
+            int(each["seq"]) + (each["mode"] == PX4_AUTO),  # its missions do not begin with home
         )
         for each in found
     ]
