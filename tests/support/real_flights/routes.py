@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,6 +61,7 @@ class Route:
         stays: seconds that it stays at the first place (move ``stay``).
         policies: event, response, seconds.
         home: metres east and north of the origin.
+        turns: degrees per second at which it turns to two other places at each; 0: it does not.
     """
 
     robot: str
@@ -70,6 +72,7 @@ class Route:
     stays: float = 0.0
     policies: Sequence[tuple[str, str, float]] = ()
     home: tuple[float, float] = (0.0, 0.0)
+    turns: float = 0.0
 
 
 def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], None]:
@@ -79,6 +82,10 @@ def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], N
         (folder / "robots").mkdir(parents=True)
         for craft in {route.craft for route in given}:
             copy(shipped("examples") / craft.example / "robots" / craft.file, folder / "robots")
+        for route in (route for route in given if route.turns):
+            file = folder / "robots" / route.craft.file
+            rate = f'maxTurnRate="{route.turns:g}"'
+            file.write_text(re.sub(r'maxTurnRate="[^"]*"', rate, file.read_text("utf-8")), "utf-8")
         (folder / "context.xmi").write_text(_context(given[0].craft.origin, forbidden), "utf-8")
         (folder / "behaviour.xmi").write_text(_behaviour(given), "utf-8")
 
@@ -137,6 +144,7 @@ def _robot(number: int, route: Route, targets: list[str]) -> str:
     home = _target(targets, f"{route.robot} home", (east, north, 0.0))
     moves = ['<moves xsi:type="behaviour:Start" name="start"/>', *filter(None, [craft.up])]
     fluid: list[bool] = [False] * len(moves)
+    first = len(targets)
     for index, (x, y, z) in enumerate(route.places):
         target = _target(targets, f"{route.robot} p{index}", (east + x, north + y, z))
         moves.append(
@@ -146,6 +154,11 @@ def _robot(number: int, route: Route, targets: list[str]) -> str:
         if index == 0 and route.stays:
             moves.append(f'<moves xsi:type="behaviour:HoldPosition" name="stay" duration="{route.stays:g}"/>')
             fluid[-1] = False
+            fluid.append(False)
+        for ahead in (1, 2) if route.turns else ():
+            look = f"//@targets.{first + (index + ahead) % len(route.places)}"
+            heading = f'<heading deviceId="camera" target="{look}"/>'
+            moves.append(f'<moves xsi:type="behaviour:HeadTo" name="h{index}{ahead}">{heading}</moves>')
             fluid.append(False)
     moves += [*filter(None, [craft.down]), '<moves xsi:type="behaviour:Stop" name="stop"/>']
     fluid += [False] * (len(moves) - len(fluid))

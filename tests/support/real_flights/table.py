@@ -217,6 +217,9 @@ def _ways(craft: Craft) -> tuple[Flight, ...]:
             deviation=deviation,
         ),
     ]
+    if craft is COPTER:
+        turning = routes(replace(_short(craft), turns=20.0))
+        given.append(Flight(f"{NAMES[craft]}: turns", turning, landing=landing, deviation=deviation))
     return tuple(given)
 
 
@@ -304,7 +307,7 @@ PX4S = (
     *(
         _as_px4(_COPTERS[name])
         for name in (
-            *("legs", "fluid", "plan in AUTO"),
+            *("legs", "fluid", "plan in AUTO", "turns"),
             *("hold, then resume", "order return", "order stop", "order land"),
             *("link cut for 40 s", "process killed"),
         )
