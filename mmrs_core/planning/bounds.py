@@ -54,23 +54,23 @@ def least_makespan(team: Team, jobs: Sequence[Job]) -> float:
     away = {task: shapely.distance(each, homes) for task, each in places.items()}
     seconds = _quickest(team, names, max(each.max() for each in away.values()) * 2.0)
     work = {task: _work(team, task) for task in tasks}
-    once = _aloft_and_down(team, pilots, tasks)
+    aloft, down = _aloft_and_down(team, pilots, tasks)
     returns = all(pilot.robot.return_home for pilot in pilots)
     there = {task: float(seconds(each).min()) for task, each in away.items()}
-    ends = _earliest_ends(team, jobs, there, work)
-    least = [once + ends[task] + (there[task] if returns else 0.0) for task in tasks]
+    ends = _earliest_ends(team, jobs, {task: aloft + seconds for task, seconds in there.items()}, work)
+    least = [ends[task] + (there[task] if returns else 0.0) + down for task in tasks]
     crews = Counter(map(team.able, tasks)).most_common(_CREWS)
     for crew in {frozenset(each) for each, _ in crews} | {frozenset(names)}:
         mine = [task for task in tasks if crew.issuperset(team.able(task))]
         tree = _spanned(*(np.concatenate([each[task] for task in mine]) for each in (places, away)))
         together = float(seconds(tree).sum()) + sum(work[task] for task in mine)
         home = min(there[task] for task in mine) if returns else 0.0
-        least.append(once + together / len(crew) + home)
+        least.append(aloft + down + together / len(crew) + home)
     return max(least)
 
 
-def _aloft_and_down(team: Team, pilots: Sequence[Pilot], tasks: Sequence[str]) -> float:
-    """Return the fewest seconds of a launch and a landing.
+def _aloft_and_down(team: Team, pilots: Sequence[Pilot], tasks: Sequence[str]) -> tuple[float, float]:
+    """Return the fewest seconds of a launch, and of a landing.
 
     Where nothing is in the way, robots launch to the height of transit or of a task and come down from one.
     """
@@ -79,11 +79,12 @@ def _aloft_and_down(team: Team, pilots: Sequence[Pilot], tasks: Sequence[str]) -
     if team.scene.transit_altitude is not None:
         low = min(low, team.scene.transit_altitude)
     free = not team.scene.areas and team.scene.minimum_separation is None
-    seconds = []
+    launches, landings = [], []
     for kinematics, home in ((pilot.kinematics, pilot.robot.home) for pilot in pilots):
         rise = max(0.0, min(low, kinematics.ceiling) - home[2]) if free and kinematics.launches else 0.0
-        seconds.append(kinematics.launching(rise) + kinematics.landing(rise))
-    return min(seconds)
+        launches.append(kinematics.launching(rise))
+        landings.append(kinematics.landing(rise))
+    return min(launches), min(landings)
 
 
 def _earliest_ends(
@@ -160,7 +161,7 @@ def _quickest(team: Team, names: Sequence[str], longest: float) -> Callable[[Arr
     least = np.full(len(lengths), inf)
     strokes = [stroke for work in distinct_works(team.scene.works) for stroke in work.strokes]
     for kinematics in kinds:
-        speed = max(commanded_speed(each, kinematics) for each in strokes)
+        speed = max(kinematics.cruise, *(commanded_speed(each, kinematics) for each in strokes))
         timing = replace(kinematics.timing, overshoot=0.0, lag=0.0)
         rates = replace(kinematics.rates(speed), timing=timing, shunting=0.0, accepts=0.0)
         times = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (each, 0.0, 0.0)) for each in lengths.tolist()]

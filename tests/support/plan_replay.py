@@ -26,6 +26,8 @@ def complaints(scene, plan):
     last = max((each.steps[-1].end for each in plan.robots if each.steps), default=0.0)
     if abs(last - plan.makespan) > NEAR:
         found.append(f"makespan {plan.makespan} is not the last end {last}")
+    if plan.lower_bound > plan.makespan + NEAR:
+        found.append(f"makespan {plan.makespan} is below the lower bound {plan.lower_bound}")
     return found
 
 
