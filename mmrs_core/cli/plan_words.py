@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mmrs_core.cli.output import counted, table
 from mmrs_core.pictures.explanations import sections_of
-from mmrs_core.pictures.figures import clock, energy, length, within
+from mmrs_core.pictures.figures import clock, energy, length, telling, within
 from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
 
 if TYPE_CHECKING:
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
 _MOST_NOTES = 4
 _WIDEST = 44
-_TELLING = 1.5
-"""Times the lower bound up to which a mission time is compared with it."""
 
 
 def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
@@ -42,7 +40,7 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
 
 def _within(plan: Plan) -> str:
     """Return by how much a plan is longer than any at most, where what is known says something."""
-    if plan.makespan > _TELLING * plan.lower_bound:
+    if not telling(plan.makespan, plan.lower_bound):
         return ""
     return f" ({within(plan.makespan, plan.lower_bound)})"
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mmrs_core.pictures.figures import clock, within
+from mmrs_core.pictures.figures import clock, telling, within
 
 if TYPE_CHECKING:
     from mmrs_core.planning.explaining import Alternative, PlanExplanation, TaskExplanation
@@ -29,12 +29,14 @@ class ExplanationPart:
 
 def sections_of(explanation: PlanExplanation) -> tuple[ExplanationPart, ...]:
     """Return an explanation in parts, each to be understood alone."""
+    if not explanation.tasks:
+        return ()
     every = (_time(explanation), _limits(explanation), _robots(explanation), _idle(explanation))
     return tuple(each for each in every if each.sentences or each.rows)
 
 
 def _time(explanation: PlanExplanation) -> ExplanationPart:
-    chain, bound = explanation.chain[:_MOST_LINKS], explanation.lower_bound
+    chain = explanation.chain[:_MOST_LINKS]
     rows = [
         (
             clock(link.begin),
@@ -46,15 +48,20 @@ def _time(explanation: PlanExplanation) -> ExplanationPart:
         for link in chain
     ]
     more = len(explanation.chain) - len(chain)
-    best = (
-        f"no plan ends before {clock(bound)}, so this one is {within(explanation.makespan, bound)}"
-        if bound
-        else "how much sooner another plan could end is not known"
-    )
-    sentences = [_last(explanation), best] if explanation.backs else []
+    sentences = [_last(explanation), _compared(explanation.makespan, explanation.lower_bound)]
     sentences += [f"{more} more rows are left out"] if more else []
     head = ("from", "to", "robot", "task", "time spent")
     return ExplanationPart("What determines the mission time", tuple(sentences), head, tuple(rows))
+
+
+def _compared(makespan: float, bound: float) -> str:
+    if not bound:
+        return "how much sooner another plan could end is not known"
+    if round(makespan - bound) == 0:
+        return "no plan ends sooner"
+    if telling(makespan, bound):
+        return f"no plan ends before {clock(bound)}, so this one is {within(makespan, bound)}"
+    return f"no plan ends before {clock(bound)}; how near to that one can come is not known"
 
 
 def _last(explanation: PlanExplanation) -> str:
@@ -78,7 +85,7 @@ def _limits(explanation: PlanExplanation) -> ExplanationPart:
         else "no limit makes the mission longer: work and distances do"
     )
     head = ("limit", "mission would end without it", "margin")
-    return ExplanationPart("Limits", (words,) if explanation.chain else (), head if rows else (), tuple(rows))
+    return ExplanationPart("Limits", (words,), head, tuple(rows))
 
 
 def _robots(explanation: PlanExplanation) -> ExplanationPart:

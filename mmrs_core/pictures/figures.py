@@ -70,6 +70,15 @@ def heights(low: float, high: float) -> str:
     return f"up to {length(high)}" if isinf(low) else f"{length(low)} to {length(high)}"
 
 
+_TELLING = 1.5
+"""Times the lower bound up to which a mission time is compared with it."""
+
+
+def telling(makespan: float, lower_bound: float) -> bool:
+    """Return whether a mission time is near enough to its lower bound to be compared with it."""
+    return makespan <= _TELLING * lower_bound
+
+
 def within(makespan: float, lower_bound: float) -> str:
     """Return by how much a plan is longer than any at most.
 
