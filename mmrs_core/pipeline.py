@@ -6,7 +6,7 @@ Stages print nothing, read no clock and no environment; only `write` and `save` 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -53,12 +53,14 @@ class BehaviourContext:
         areas: of the context as drawn, and those that its elements make; None where no context is given.
         environment: weather and water, by attribute name.
         elements: context elements of plug-ins.
+        tasks: of the mission, by name; empty where no mission is given.
     """
 
     types: Mapping[str, RobotType]
     areas: tuple[Area, ...] | None = None
     environment: Mapping[str, float] | None = None
     elements: tuple[Part, ...] = ()
+    tasks: Mapping[str, Part] = field(default_factory=dict)
 
 
 def read_models(
@@ -161,7 +163,8 @@ def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[b
 def place_of_scene(scene: Scene) -> BehaviourContext:
     """Return what the behaviour of a scene is checked against."""
     types = {robot.type.name: robot.type for robot in scene.robots}
-    return BehaviourContext(types, scene.areas, scene.environment, scene.elements)
+    tasks = {task.name: task.part for task in scene.tasks}
+    return BehaviourContext(types, scene.areas, scene.environment, scene.elements, tasks)
 
 
 def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program:
@@ -183,6 +186,7 @@ def verify(program: Program, place: BehaviourContext, contributions: Contributio
         areas=place.areas,
         environment=place.environment or {},
         elements=place.elements,
+        tasks=place.tasks,
     )
     return verified(given, contributions.checks)
 

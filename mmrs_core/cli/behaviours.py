@@ -18,16 +18,17 @@ from mmrs_core.languages import mission as missions
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.modelset import context_in, types_by_name
+from mmrs_core.languages.modelset import context_in, model_in, types_by_name
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.references.project import robot_files_in
-from mmrs_core.pipeline import BehaviourContext, program_of
+from mmrs_core.pipeline import BehaviourContext, program_of, read_models
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.cli.session import Session
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
+    from mmrs_core.scene import Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +103,27 @@ def read_behaviour_files(
     if not unsaved:
         session.have_read(models, place)
     return _as_files(file, models, place)
+
+
+def tasks_beside(session: Session, file: Path, loaded: Loaded) -> Mapping[str, Part]:
+    """Return the tasks of the mission in the folder of a behaviour, by name; none where there is no mission.
+
+    Raises:
+        UnreadableError: if the mission cannot be read, or has its positions in another frame.
+        InvalidModelError: if a position or what is required is missing in it.
+    """
+    from mmrs_core.grounding.scenes import ground
+
+    mission = model_in(file.parent, "mission")
+    if mission is None:
+        return {}
+    models, faults = read_models(mission, session.contributions)
+    if models is None:
+        raise UnreadableError(f"{mission}: cannot be read", faults)
+    scene = ground(models)
+    if scene.frame != loaded.program.frame:
+        raise UnreadableError(f"{mission}: its frame is not that of {file}: plan it again")
+    return {task.name: task.part for task in scene.tasks}
 
 
 def _read_all(files: Sequence[Path], registry: Registry, unsaved: Mapping[Path, bytes] | None) -> list[Model]:

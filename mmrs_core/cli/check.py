@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import typer
 
-from mmrs_core.cli.behaviours import load_behaviour
+from mmrs_core.cli.behaviours import load_behaviour, tasks_beside
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.sarif import (
@@ -39,7 +40,7 @@ def check(
     """Verify the safety of a behaviour.
 
     Checks clearance, separation, energy, synchronisation and more, independently of the planner. Behaviours
-    written by hand are checked in the same way.
+    written by hand are checked in the same way; photos are, against the mission in the same folder.
 
     Example: mmrs check field/behaviour.xmi --sarif check.sarif
     """
@@ -49,7 +50,8 @@ def check(
     subject = subject_of("check", file)
     with refusals_in(sarif, session, subject):
         loaded = load_behaviour(session, file, context=context, robots=robot_files(robots))
-    verdicts = verdicts_of(session, loaded.program, loaded.place)
+        place = replace(loaded.place, tasks=tasks_beside(session, file, loaded))
+    verdicts = verdicts_of(session, loaded.program, place)
     against = refusals(verdicts, loaded.program)
     if sarif is not None:
         write_sarif(

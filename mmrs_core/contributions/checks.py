@@ -79,6 +79,7 @@ class CheckInput:
         areas: of the context as drawn, and those that its elements make; None where no context was given.
         environment: by attribute name; absent where not known.
         elements: context elements of plug-ins; empty where no context was given.
+        tasks: of the mission, by name as moves have it; empty where no mission was given.
         shared: what checks of one verification keep for each other, by the function that found it.
     """
 
@@ -89,6 +90,7 @@ class CheckInput:
     areas: tuple[Area, ...] | None = None
     environment: Mapping[str, float] = field(default_factory=dict)
     elements: tuple[Part, ...] = ()
+    tasks: Mapping[str, Part] = field(default_factory=dict)
     shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -351,6 +351,8 @@ def judged(checks: Iterable[Check], name: str, case: str) -> tuple[Verdict, ...]
         "image": _image,
         "replace": replace,
         "asked": _asked,
+        "photographed": _photographed,
+        "area": _lawn,
     }
     asked = eval(f"asked({case})", names)  # noqa: S307  our own fixtures
     return tuple(next(check for check in checks if check.name == name).run(asked))
@@ -370,14 +372,26 @@ def _line(verdict: Verdict) -> str:
     return f"{verdict.property}: {verdict.status.value}{margin}\n    {verdict.message}"
 
 
-def _asked(made: RobotProgram, environment: Mapping[str, float] | None = None) -> CheckInput:
+def _asked(made: RobotProgram, environment: Mapping[str, float] | None = None, **tasks: Part) -> CheckInput:
     bounds = Part((), {"min": -10.0, "max": 40.0})
     type = rover(max_payload=1.0, attributes={"operatingTemperature": bounds})
-    return given(made, type=type, environment=environment or {})
+    return given(made, type=type, environment=environment or {}, tasks=tasks)
 
 
 def _image(needed: float) -> Action:
     return replace(use("camera", "shoot"), parameters=(("minimumIrradiance", f"{needed:g}"),))
+
+
+def _photographed(*places: tuple[float, float]) -> RobotProgram:
+    photo = (use("camera", "TakePicture"),)
+    moves = [go(f"at {east:g}", (east, north, 20.0), task="lawn", after=photo) for east, north in places]
+    return robot_with("a", moves, home=(0.0, 10.0, 20.0))
+
+
+def _lawn(width: float) -> Part:
+    shell = ((0.0, 0.0, 0.0), (width, 0.0, 0.0), (width, 20.0, 0.0), (0.0, 20.0, 0.0))
+    given = {"shell": shell, "altitude": 20.0, "gridResolution": 20.0, "actionName": "TakePicture"}
+    return Part((("urn:mmrs:survey:1.0", "PhotoGridTask"),), given)
 
 
 _SAFE = re.compile(r"\w+: safe")

@@ -12,6 +12,7 @@ from mmrs_core.languages.sources import MetamodelSource
 from mmrs_survey import names
 
 if TYPE_CHECKING:
+    from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.rules import Rule
@@ -50,6 +51,14 @@ def mmrs_rules() -> tuple[Rule, ...]:
     from mmrs_survey.roads import ROAD_RULE
 
     return (PHOTO_GRID_RULE, *POINT_RULES, ROAD_RULE, PERIMETER_RULE, ORBIT_RULE, MEASURE_RULE)
+
+
+@hookimpl
+def mmrs_checks() -> tuple[Check, ...]:
+    """Contribute the check that photos cover the areas of their tasks."""
+    from mmrs_survey.photo_check import PHOTOS_CHECK
+
+    return (PHOTOS_CHECK,)
 
 
 @hookimpl

@@ -357,7 +357,7 @@ def test_metamodels_are_listed_with_who_provides_them(capsys):
         "ns_uri": "urn:mmrs:mission:1.0",
         "name": "mission",
         "provider": "core",
-        "classes": "16",
+        "classes": "17",
     } in listed
 
 

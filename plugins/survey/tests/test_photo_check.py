@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from mmrs_survey.names import PHOTO_GRID_TASK
+from mmrs_survey.photo_check import PHOTOS_CHECK
+
+from mmrs_core.contributions.checks import CheckInput, Status
+from mmrs_core.scene import Area, AreaUse, Device, Part
+from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, program, robot, robot_type, use
+from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
+
+SQUARE = ((0.0, 0.0, 0.0), (40.0, 0.0, 0.0), (40.0, 40.0, 0.0), (0.0, 40.0, 0.0))
+FIELD = {"shell": SQUARE, "altitude": 20.0, "actionName": "Snap", "triggerAction": "Trigger"}
+OPTICS = {"sensor.width": "12", "sensor.height": "8", "focal.length": "8"}
+
+
+def trigger(metres):
+    return replace(use("camera", "Trigger"), parameters=(("distance", f"{metres:g}"),))
+
+
+def leg(east, begin, end, every):
+    """Return the moves to and along a line to the north, on which photos are taken in passing."""
+    yield go(f"to {east:g}", (east, begin, 20.0))
+    passing = {"before": (trigger(every),), "after": (trigger(0.0),)}
+    yield go(f"along {east:g}", (east, end, 20.0), task="field", **passing)
+
+
+def judged(*moves, areas=(), optics=OPTICS, **more):
+    camera = Device("camera", {}, dict(optics))
+    type = replace(robot_type(), devices={"camera": camera})
+    given = CheckInput(
+        program(robot("a", moves, home=(0.0, 0.0, 20.0))),
+        {ROBOT_TYPE: type},
+        {PLAIN_ROBOT.metaclass: PLAIN_ROBOT},
+        {kind.metaclass: kind for kind in MOVE_KINDS},
+        areas,
+        tasks={"field": Part((PHOTO_GRID_TASK,), {**FIELD, **more})},
+    )
+    return [(verdict.status, verdict.message) for verdict in PHOTOS_CHECK.run(given)]
+
+
+@pytest.mark.parametrize(
+    ("every", "end", "more", "left"),
+    [
+        (20.0, 30.0, {"gridResolution": 20.0}, None),
+        (25.0, 35.0, {"gridResolution": 20.0}, 200.0),
+        (20.0, 25.0, {"gridResolution": 20.0}, 200.0),
+        (20.0, 30.0, {}, None),
+        (20.0, 30.0, {"sideOverlap": 0.5}, 400.0),
+        (20.0, 30.0, {"frontOverlap": 0.5}, 800.0),
+        (10.0, 35.0, {"frontOverlap": 0.5, "footprintWidth": 20.0, "footprintLength": 20.0}, 200.0),
+    ],
+)
+def test_what_no_photo_shows_is_measured(every, end, more, left):
+    moves = (*leg(10.0, 10.0, end, every), *leg(30.0, 10.0, end, every))
+    ((status, message),) = judged(*moves, **more)
+    if left is None:
+        assert (status, message[:29]) == (Status.SAFE, "task 'field': 1600.0 m² are i")
+    else:
+        assert (status, message.partition(" m²")[0]) == (
+            Status.VIOLATED,
+            f"task 'field': {left:.1f} of 1600.0",
+        )
+
+
+def test_photos_of_other_tasks_and_from_where_no_robot_may_be_do_not_count():
+    shut = Area("hall", AreaUse.OBSTACLE, tuple(p[:2] for p in SQUARE[:3]), 0.0, 50.0, 0.0)
+    half = judged(*leg(10.0, 10.0, 30.0, 20.0), areas=(shut,), gridResolution=20.0)
+    assert half[0][1].startswith("task 'field': 186.1 of 771.9 m² are not in its 2 photos")
+    stray = (*leg(10.0, 10.0, 30.0, 20.0), go("else", (30.0, 20.0, 20.0), after=(use("camera", "Snap"),)))
+    assert judged(*stray, gridResolution=20.0)[0][1].startswith("task 'field': 800.0 of")
+    assert judged(hold("elsewhere")) == []
+
+
+def test_a_photo_of_a_robot_that_holds_counts_whichever_way_it_faces():
+    moves = (go("to", (20.0, 20.0, 20.0)), hold("there", task="field", after=(use("camera", "Snap"),)))
+    ((_, message),) = judged(*moves, gridResolution=40.0)
+    assert message.startswith("task 'field': 34")
+
+
+def test_what_a_photo_shows_must_be_known():
+    ((status, message),) = judged(*leg(10.0, 10.0, 30.0, 20.0), optics={})
+    assert (status, message) == (
+        Status.UNKNOWN,
+        "task 'field': device 'camera' does not state what a photo shows",
+    )
