@@ -110,7 +110,7 @@ def explanation_summary(explanation: PlanExplanation) -> Mapping[str, object]:
                 "robots": task.robots,
                 "alternatives": [_alternative(each) for each in task.alternatives],
                 "unable": task.unable,
-                "untried": task.untried,
+                "tried": task.tried,
             }
             for task in explanation.tasks
         ],

@@ -69,6 +69,8 @@ def _last(explanation: PlanExplanation) -> str:
     last = [f"'{name}'" for name, back in explanation.backs if round(end - back) == 0]
     before = [(name, back) for name, back in explanation.backs if round(end - back) > 0][:3]
     words = ", ".join(f"{clock(end - back)} after '{name}'" for name, back in before)
+    if len(explanation.backs) == 1:
+        return f"{last[0]} finishes at {clock(end)}"
     verb = "finishes" if len(last) == 1 else "finish"
     return f"{' and '.join(last)} {verb} last, at {clock(end)}" + (f": {words}" if words else "")
 
@@ -89,27 +91,26 @@ def _limits(explanation: PlanExplanation) -> ExplanationPart:
 
 
 def _robots(explanation: PlanExplanation) -> ExplanationPart:
-    untried = sum(task.untried > 0 and not task.alternatives for task in explanation.tasks)
+    alternatives = [each for task in explanation.tasks for each in task.alternatives]
     team = len(explanation.backs) + len(explanation.idle)
-    rows = [row for task in explanation.tasks for row in _rows(task, team)]
-    sentences = [
-        "each alternative was planned, with all other tasks as they are; times are those before robots wait"
-        " to keep their distance"
-        if any(each.name == "separation" for each in explanation.limits)
-        else "each alternative was planned, with all other tasks as they are"
-    ]
-    if untried:
+    rows = [row for task in explanation.tasks for row in _rows(task, team)] if alternatives else []
+    sentences = ["each alternative was planned, with all other tasks as they are"]
+    if any(each.name == "separation" for each in explanation.limits):
+        sentences[0] += "; times are those before robots wait to keep their distance"
+    if not alternatives:
+        sentences = ["there is only one robot" if team == 1 else "no task could be done by another robot"]
+    if untried := sum(not task.tried for task in explanation.tasks):
         sentences.append(f"{untried} tasks were left out, since there are too many alternatives")
-    if any(
-        not each.fault and round(each.later) < 0 for task in explanation.tasks for each in task.alternatives
-    ):
+    if any(not each.fault and round(each.later) < 0 for each in alternatives):
         sentences.append("an alternative would end sooner: a longer search (--time-limit) may find it")
     head = ("task", "robots", "alternative", "mission ends", "task ends", "robots busy")
-    return ExplanationPart("Why these robots", (*sentences, *_unable(explanation)), head, tuple(rows))
+    return ExplanationPart(
+        "Why these robots", (*sentences, *_unable(explanation)), head if rows else (), tuple(rows)
+    )
 
 
 def _rows(task: TaskExplanation, team: int) -> Iterator[tuple[str, ...]]:
-    if task.untried and not task.alternatives:
+    if not task.tried:
         return
     names, first = (task.task, ", ".join(task.robots)), True
     for each in task.alternatives[:_MOST_ALTERNATIVES]:

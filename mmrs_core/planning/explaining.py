@@ -18,7 +18,7 @@ from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import distance_to_keep
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.scene import Branch, Launch, Plan, Recharge, Recover, RobotPlan, Scene, Serve, Step
+from mmrs_core.scene import Branch, Launch, Plan, Position, Recharge, Recover, RobotPlan, Scene, Serve, Step
 
 _MOST = 400_000
 """Schedules that are tried, times their jobs, at most."""
@@ -58,7 +58,7 @@ class TaskExplanation:
         robots: that do it.
         alternatives: best first.
         unable: by robot: why it cannot do it.
-        untried: how many alternatives were not tried, since there are so many.
+        tried: whether alternatives were tried: of very many tasks, those on the critical path come first.
     """
 
     task: str
@@ -67,7 +67,7 @@ class TaskExplanation:
     end: float
     alternatives: tuple[Alternative, ...]
     unable: Mapping[str, str]
-    untried: int = 0
+    tried: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +123,7 @@ class _Explaining:
             if isinstance(self._found, Schedule):
                 break
         self._left = _MOST // max(1, len(self._jobs))
+        self._stops = dict[str, list[Position]]()
 
     def all(self) -> PlanExplanation:
         chain = critical_path(self._plan)
@@ -142,22 +143,19 @@ class _Explaining:
         )
 
     def _task(self, job: Job) -> TaskExplanation:
-        mine, tried, untried = self._groups[job.name], list[Alternative](), 0
+        mine, begin, end = self._groups[job.name], self._plan.begins[job.name], self._ends(job)
+        if self._left <= 0 or not isinstance(self._found, Schedule):
+            return TaskExplanation(job.name, mine, begin, end, (), {}, tried=False)
         able = [name for name in self._team.pilots if self._able(job, name)]
+        others = self._team.pilots.keys() - set(able)
+        unable = {name: self._why_not(job, name) for name in self._team.pilots if name in others}
+        tried = list[Alternative]()
         for robots in self._others(job, mine, able):
-            orders = list(self._orders(job, set(robots) - set(mine)))
-            if isinstance(self._found, Schedule) and len(orders) <= self._left:
-                self._left -= len(orders)
-                other = self._tried(job, robots, orders, self._found)
-                if any(abs(each) > _SAME for each in (other.later, other.task_later, other.longer)):
-                    tried.append(other)  # else a robot that could join has got no share
-            else:
-                untried += 1
+            other = self._tried(job, robots, list(self._orders(job, set(robots) - set(mine))), self._found)
+            if any(abs(each) > _SAME for each in (other.later, other.task_later, other.longer)):
+                tried.append(other)  # else a robot that could join has got no share
         tried.sort(key=lambda each: (round(each.later, 1), round(each.longer, 1)))
-        names = [name for name in self._team.pilots if name not in able]
-        unable = {name: self._why_not(job, name) for name in names}
-        begin, end = self._plan.begins[job.name], self._ends(job)
-        return TaskExplanation(job.name, mine, begin, end, tuple(tried), unable, untried)
+        return TaskExplanation(job.name, mine, begin, end, tuple(tried), unable)
 
     def _ends(self, job: Job) -> float:
         return max(self._plan.ends.get(name, 0.0) for name in (job.name, *job.tasks()))
@@ -185,15 +183,13 @@ class _Explaining:
     def _distance(self, job: Job, robot: str) -> float:
         """Return the metres from a job to the nearest of what a robot does, and of its home."""
         here = self._place(job.tasks()[0], robot)
-        tasks = [
-            task for each in self._jobs if robot in self._groups.get(each.name, ()) for task in each.tasks()
-        ]
-        homes = [self._team.pilots[robot].robot.home]
-        return min(
-            dist(here[:2], there[:2]) for there in (*homes, *(self._place(each, robot) for each in tasks))
-        )
+        if robot not in self._stops:
+            jobs = (each for each in self._jobs if robot in self._groups.get(each.name, ()))
+            stops = [self._place(task, robot) for each in jobs for task in each.tasks()]
+            self._stops[robot] = [self._team.pilots[robot].robot.home, *stops]
+        return min(dist(here[:2], there[:2]) for there in self._stops[robot])
 
-    def _place(self, task: str, robot: str) -> tuple[float, float, float]:
+    def _place(self, task: str, robot: str) -> Position:
         return self._scene.works[task, robot].strokes[0].points[0]
 
     def _orders(self, job: Job, joining: set[str]) -> Iterator[tuple[str, ...]]:
@@ -220,6 +216,7 @@ class _Explaining:
     ) -> Alternative:
         names = tuple(name for name in self._team.pilots if name in robots)
         best = Alternative(names, fault=self._short_of_charge(job, names))
+        self._left -= len(orders)
         for order in orders:
             decisions = Decisions(order, {**self._groups, job.name: names})
             other = schedule(self._team, self._jobs, decisions)
