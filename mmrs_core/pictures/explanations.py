@@ -31,7 +31,13 @@ def sections_of(explanation: PlanExplanation) -> tuple[ExplanationPart, ...]:
     """Return an explanation in parts, each to be understood alone."""
     if not explanation.tasks:
         return ()
-    every = (_time(explanation), _limits(explanation), _robots(explanation), _idle(explanation))
+    every = (
+        _time(explanation),
+        _limits(explanation),
+        _robots(explanation),
+        _unable(explanation),
+        _idle(explanation),
+    )
     return tuple(each for each in every if each.sentences or each.rows)
 
 
@@ -104,9 +110,7 @@ def _robots(explanation: PlanExplanation) -> ExplanationPart:
     if any(not each.fault and round(each.later) < 0 for each in alternatives):
         sentences.append("an alternative would end sooner: a longer search (--time-limit) may find it")
     head = ("task", "robots", "alternative", "mission ends", "task ends", "robots busy")
-    return ExplanationPart(
-        "Why these robots", (*sentences, *_unable(explanation)), head if rows else (), tuple(rows)
-    )
+    return ExplanationPart("Why these robots", tuple(sentences), head if rows else (), tuple(rows))
 
 
 def _rows(task: TaskExplanation, team: int) -> Iterator[tuple[str, ...]]:
@@ -152,7 +156,11 @@ def _change(before: tuple[str, ...], after: tuple[str, ...]) -> str:
     return f"{', '.join(come)} instead" + (f" of {', '.join(gone)}" if len(before) > 1 else "")
 
 
-def _unable(explanation: PlanExplanation) -> Iterator[str]:
+def _unable(explanation: PlanExplanation) -> ExplanationPart:
+    return ExplanationPart("What robots cannot do", tuple(_unable_words(explanation)))
+
+
+def _unable_words(explanation: PlanExplanation) -> Iterator[str]:
     """Yield which robots cannot do which tasks, and why; what has one reason is said once."""
     tasks = dict[tuple[str, str], list[str]]()
     for task in explanation.tasks:
