@@ -173,8 +173,10 @@ class Guard:
 
     def notice(self, frame: Frame, now: float) -> None:
         """Inspect a frame that the node itself does not receive."""
+        if self._reported:
+            return
         self._senders.hear(frame, now)
-        if self._senders.fault and not self._reported:
+        if self._senders.fault:
             self._reported, self._due = True, now
             self._say(f"{self._senders.fault}: the dive is given up")
             self._node.hear(emergency_frame(VEHICLE, REASON, 0), now)

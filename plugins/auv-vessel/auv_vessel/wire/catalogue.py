@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import ceil, floor
 from typing import TypeVar
 
@@ -288,7 +289,7 @@ class Slot:
     high: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Layout:
     """A message's fields by name, its counter and check last if it is guarded, and its length in bytes."""
 
@@ -297,6 +298,7 @@ class Layout:
     length: int
 
 
+@cache
 def layout_of(message: Message) -> Layout:
     """Return where a message's fields lie; counter and check have whole bytes to themselves."""
     slots: dict[str, Slot] = {}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from functools import lru_cache
 from math import isfinite
+from types import MappingProxyType
 from typing import NamedTuple, NoReturn, TypeAlias
 
 from auv_vessel.sheet import Sheet
@@ -68,7 +70,7 @@ class Codec:
         coding = None if frame.extended else self._by_id.get(frame.id)
         if coding is None:
             return None
-        found = coding.received(frame.data)
+        found = _received(coding.layout, frame.data)
         if found is None:
             self.faults[coding.message.name] += 1
         return found
@@ -83,8 +85,8 @@ class _Coding:
     """How one message is put into bytes and taken from them."""
 
     def __init__(self, layout: Layout) -> None:
+        self.layout = layout
         self.message: Message = layout.message
-        self._length = layout.length
         self._own = {name: slot for name, slot in layout.slots.items() if name not in (SEQUENCE, CHECK)}
         self._own_length = layout.length - len(layout.slots) + len(self._own)
         self._sequence = 255
@@ -106,22 +108,6 @@ class _Coding:
         data += bytes((self._sequence,))
         return Frame(self.message.id, data + bytes((check_of(self.message.id, data),)))
 
-    def received(self, data: bytes) -> Received | None:
-        if len(data) != self._length:
-            return None
-        if self.message.guarded and check_of(self.message.id, data[:-1]) != data[-1]:
-            return None
-        bits = int.from_bytes(data, "little")
-        values: dict[str, Value] = {}
-        for name, slot in self._own.items():
-            number = bits >> slot.start & slot.mask
-            if slot.field.signed and number > slot.mask >> 1:
-                number -= slot.mask + 1
-            if not slot.low <= number <= slot.high:
-                return None
-            values[name] = _meaning(slot, number)
-        return Received(self.message.name, values, data[-2] if self.message.guarded else None)
-
     def _raw(self, slot: Slot, value: Value) -> int:
         field = slot.field
         if field.names:
@@ -141,6 +127,28 @@ class _Coding:
         said = [f"{name} is missing" for name in sorted(missing)]
         said += [f"there is no field {name}" for name in sorted(unknown)]
         raise ValueError(f"{self.message.name}: {', '.join(said)}")
+
+
+@lru_cache(maxsize=64)  # each node that receives a frame asks
+def _received(layout: Layout, data: bytes) -> Received | None:
+    """Return what the bytes of a message say; None: nothing that can be believed."""
+    guarded = layout.message.guarded
+    if len(data) != layout.length:
+        return None
+    if guarded and check_of(layout.message.id, data[:-1]) != data[-1]:
+        return None
+    bits = int.from_bytes(data, "little")
+    values: dict[str, Value] = {}
+    for name, slot in layout.slots.items():
+        if name in (SEQUENCE, CHECK):
+            continue
+        number = bits >> slot.start & slot.mask
+        if slot.field.signed and number > slot.mask >> 1:
+            number -= slot.mask + 1
+        if not slot.low <= number <= slot.high:
+            return None
+        values[name] = _meaning(slot, number)
+    return Received(layout.message.name, MappingProxyType(values), data[-2] if guarded else None)
 
 
 def _nearest(number: float) -> int:
