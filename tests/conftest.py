@@ -35,6 +35,10 @@ def pytest_configure(config: pytest.Config) -> None:
     obey_interrupts()
     draw_the_same_examples_everywhere()
     take_examples_by_profile(config)
+    if not selects_thorough(config):
+        from plans_once import remember_plans
+
+        remember_plans()
     if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
         config.pluginmanager.register(Courtesy())
     if AT_WORK_WITH_OTHERS and config.option.loadgroup and not any("::" in each for each in config.args):

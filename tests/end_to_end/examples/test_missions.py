@@ -12,6 +12,7 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.checks import Status
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.diagnostics import Severity
+from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Serve, Step
 from mmrs_core.simulation.run import simulate
 
@@ -77,7 +78,7 @@ def test_only_what_the_mission_accepts_is_unknown(example):
     ],
 )
 def test_planning_twice_gives_the_same_plan(taken, name):
-    assert pipeline.plan(taken(name).scene) == taken(name).plan
+    assert plan(taken(name).scene) == taken(name).plan
 
 
 def test_the_behaviour_survives_a_file(example, contributions, tmp_path):

@@ -1,0 +1,40 @@
+"""Plans of a test run: a scene that is planned in one process is not planned again in the others."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from hashlib import sha256
+from time import process_time
+
+import shared
+
+from mmrs_core import pipeline
+from mmrs_core.planning.effort import Effort
+from mmrs_core.planning.planner import plan
+from mmrs_core.scene import Plan, Scene
+
+_LONG = 0.2
+"""Seconds of planning from which on a plan is worth a file."""
+_FOLDER = shared.folder() / "plans"
+
+
+def remember_plans() -> None:
+    """Have the pipeline, and commands that are imported from now on, find plans of equal scenes."""
+    _FOLDER.mkdir(exist_ok=True)
+    pipeline.plan = _remembered
+
+
+def _remembered(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
+    if effort is not None and effort.timed:
+        return plan(scene, seed=seed, effort=effort)
+    file = _FOLDER / sha256(pickle.dumps((scene, seed))).hexdigest()
+    if file.exists():
+        return pickle.loads(file.read_bytes())  # type: ignore[no-any-return]
+    begin = process_time()
+    found = plan(scene, seed=seed, effort=effort)
+    if process_time() - begin > _LONG and not (effort is not None and effort.stopped):
+        beside = file.with_suffix(f".{os.getpid()}")
+        beside.write_bytes(pickle.dumps(found))
+        beside.rename(file)
+    return found
