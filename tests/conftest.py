@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+import same_examples
 import shared
 from _pytest.mark.expression import Expression
 from whole_files import ByGroup, InWorkers
@@ -33,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not AT_WORK_WITH_OTHERS:
         config.add_cleanup(shared.open_folder())
     obey_interrupts()
-    draw_the_same_examples_everywhere()
+    same_examples.pytest_configure()
     take_examples_by_profile(config)
     if not selects_thorough(config):
         from plans_once import remember_plans
@@ -64,16 +65,6 @@ def keep_bytecode_elsewhere(config: pytest.Config) -> None:
     config.add_cleanup(lambda: shutil.rmtree(written, ignore_errors=True))
 
 
-def draw_the_same_examples_everywhere() -> None:
-    """Keep hypothesis from drawing constants out of the modules that happen to be loaded.
-
-    Workers load different ones, so that one seed would try other examples in each run.
-    """
-    from hypothesis.internal.conjecture import providers
-
-    providers._get_local_constants = lambda: providers._local_constants
-
-
 def take_examples_by_profile(config: pytest.Config) -> None:
     """Draw few examples, or very many where ``-m`` selects thorough tests; each may take its time.
 
@@ -81,7 +72,7 @@ def take_examples_by_profile(config: pytest.Config) -> None:
     """
     from hypothesis import settings
 
-    settings.register_profile("fast", deadline=None, max_examples=50)
+    settings.register_profile("fast", deadline=None, max_examples=30)
     settings.register_profile("thorough", deadline=None, max_examples=2000)
     settings.load_profile(THOROUGH if selects_thorough(config) else "fast")
 

@@ -12,6 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+import same_examples
 import warm_python
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(600)]
@@ -23,7 +24,8 @@ BLOCK = re.compile(
 PICTURE = re.compile(r"<!-- picture: (?P<made>\S+) is (?P<shown>\S+) -->")
 PROGRAMS = {
     "pip": "from pip._internal.cli.main import main",
-    "pytest": "from pytest import main",
+    "pytest": f"sys.path.append({str(Path(same_examples.__file__).parent)!r})\n"
+    "sys.argv[1:1] = ['-p', 'same_examples']\nfrom pytest import main",
 }
 COMMAND = """import site, sys
 site.addsitedir({packages!r})

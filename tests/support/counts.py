@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import settings
 
-FAST_MOST = 100
+FAST_MOST = 50
 """More examples of one test take too long for the fast profile."""
 
 

@@ -276,6 +276,9 @@ def run(arguments: list[str]) -> None:
                 exec(compile(code, "<string>", "exec"), {"__name__": "__main__"})  # noqa: S102
                 return
             case ["-m", module, *words]:
+                if module == "pytest":
+                    sys.path.append(str(Path(__file__).parent))
+                    words = ["-p", "same_examples", *words]
                 sys.argv = ["-m", *words]
                 sys.path.insert(0, str(Path.cwd()))
                 runpy.run_module(module, run_name="__main__", alter_sys=True)

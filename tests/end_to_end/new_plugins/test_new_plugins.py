@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import same_examples
 from built_wheels import build, install
 from warm_python import python
 
@@ -67,8 +68,9 @@ def site(place):
 
 
 def its_tests_pass(name, place, site):
-    options = ("-q", "-W", "error", "-p", "no:cacheprovider")
-    said = run(sys.executable, "-m", "pytest", *options, cwd=place / f"mmrs-{name}", site=site)
+    options = ("-q", "-W", "error", "-p", "no:cacheprovider", "-p", "same_examples")
+    paths = f"{site}{os.pathsep}{Path(same_examples.__file__).parent}"
+    said = run(sys.executable, "-m", "pytest", *options, cwd=place / f"mmrs-{name}", site=paths)
     assert " passed" in said
     assert "skipped" not in said
 

@@ -20,7 +20,7 @@ def check(first, contributions, tmp_path, count=BATCH):
 
 
 def test_behaviours_pass_and_solvable_missions_are_not_refused(contributions, tmp_path):
-    check(25, contributions, tmp_path, count=5)
+    check(25, contributions, tmp_path, count=3)
 
 
 @pytest.mark.thorough

@@ -386,7 +386,13 @@ def test_a_speed_that_its_bus_cannot_say_is_not_taken_for_as_fast_as_it_likes(tm
     assert found.run.ending.time > 5.0
 
 
-@pytest.mark.parametrize("clearance", [movement.CLEARANCE, -5.0], ids=["clear of it", "pressing on it"])
+@pytest.mark.parametrize(
+    "clearance",
+    [
+        pytest.param(movement.CLEARANCE, id="clear of it"),
+        pytest.param(-5.0, id="pressing on it", marks=pytest.mark.thorough),
+    ],
+)
 def test_a_vehicle_that_the_bottom_keeps_from_its_goal_comes_up(clearance, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(movement, "CLEARANCE", clearance)
     monkeypatch.setattr(guidance, "ALLOWANCE", 4.0)
