@@ -104,9 +104,7 @@ class TestVehicles(VehicleConformance):
     @pytest.mark.parametrize(
         ("share", "response"),
         [
-            pytest.param(
-                share, response, marks=() if share == 0.3 or response == "HOLD" else pytest.mark.thorough
-            )
+            pytest.param(share, response, marks=() if share == 0.3 else pytest.mark.thorough)
             for share in (0.0, 0.3, 1.0)
             for response in ("HOLD", "RETURN", "LAND", "SURFACE", "STOP_THRUST")
         ],

@@ -65,6 +65,9 @@ def project(tmp_path_factory):
     """Return the paper's example with airships instead of drones, planned."""
     folder = tmp_path_factory.mktemp("airships")
     made = Path(shutil.copytree(EXAMPLE, folder / "project"))
+    mission = made / "mission.xmi"
+    text = mission.read_text(encoding="utf-8")
+    mission.write_text(text.replace('gridResolution="12.0"', 'gridResolution="60.0"'), encoding="utf-8")
     (file,) = (made / "robots").glob("*.xmi")
     text = file.read_text(encoding="utf-8").replace("multicopter:Drone ", "airship:Airship ")
     text = text.replace("</multicopter:Drone>", "</airship:Airship>")

@@ -141,10 +141,10 @@ def test_a_shape_over_the_antimeridian_is_written_in_one_piece():
     ]
 
 
-def test_a_million_positions_are_arrays():
-    line = ",".join(f"[{8 + n * 1e-6:.6f},47]" for n in range(10**6))
+def test_positions_are_arrays():
+    line = ",".join(f"[{8 + n * 1e-6:.6f},47]" for n in range(10**5))
     data = f'{{"type": "LineString", "coordinates": [{line}]}}'.encode()
-    assert read(data, "a.json").features[0].rings[0].shape == (10**6, 2)
+    assert read(data, "a.json").features[0].rings[0].shape == (10**5, 2)
 
 
 @pytest.mark.parametrize(

@@ -155,8 +155,8 @@ def test_what_is_no_kmz_is_refused(data, message):
         read(data, "a.kmz")
 
 
-def test_a_million_positions_are_arrays():
-    line = " ".join(f"{8 + n * 1e-6:.6f},47" for n in range(10**6))
+def test_positions_are_arrays():
+    line = " ".join(f"{8 + n * 1e-6:.6f},47" for n in range(10**5))
     (feature,) = read(placemark(line, "LineString"), "a.kml").features
-    assert feature.rings[0].shape == (10**6, 2)
+    assert feature.rings[0].shape == (10**5, 2)
     assert feature.rings[0].dtype == np.float64

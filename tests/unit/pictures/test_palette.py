@@ -27,6 +27,8 @@ NOT_COLOURS = {"lift", "k"}
 def colours_in(file):
     """Return the lines of a file that name a colour, other than as the colour of a plug-in's symbol."""
     words = file.read_text("utf-8")
+    if not LITERAL.search(words):
+        return []
     if file.suffix == ".py":
         nodes = list(ast.walk(ast.parse(words)))
         symbols = [

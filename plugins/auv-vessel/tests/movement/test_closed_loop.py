@@ -223,7 +223,10 @@ def deepest(rig: Rig, seconds: float) -> float:
 @pytest.mark.parametrize(
     ("make", "extra"),
     [
-        *(pytest.param(make, {}, id=name) for name, make in SHEETS.items()),
+        *(
+            pytest.param(make, {}, id=name, marks=() if make is heavy_sheet else pytest.mark.thorough)
+            for name, make in SHEETS.items()
+        ),
         *(
             pytest.param(
                 make,
