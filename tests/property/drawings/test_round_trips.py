@@ -6,7 +6,7 @@ import csv
 import io
 import warnings
 from contextlib import suppress
-from itertools import product
+from itertools import pairwise, product
 
 import pytest
 from counts import many
@@ -24,6 +24,9 @@ WRITERS = {
     "kml": (kml_writer.write, kml.read),
     "kmz": (kml_writer.write_archive, kml.read),
 }
+PAIRS = [*product(WRITERS, repeat=2)]
+FAST = [*pairwise([*WRITERS, "gpx"])]
+"""Each format once before another and once after one."""
 
 
 def _place_in_gpx(feature: MapFeature) -> int:
@@ -33,7 +36,10 @@ def _place_in_gpx(feature: MapFeature) -> int:
     return 0 if feature.geometry is Geometry.POINT else 2
 
 
-@pytest.mark.parametrize(("first", "second"), [*product(WRITERS, repeat=2)])
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [pytest.param(*pair, marks=() if pair in FAST else pytest.mark.thorough) for pair in PAIRS],
+)
 @settings(max_examples=many(400))
 @given(drawing=drawings(), title=st.text(max_size=10))
 def test_a_round_trip_keeps_shapes_and_all_that_is_said_of_them(first, second, drawing, title):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import threading
 import time
 from contextlib import suppress
@@ -52,6 +53,7 @@ def test_a_program_that_hangs_is_a_lost_peer_until_it_speaks_again(gateway, peer
 
 def test_a_program_that_reads_nothing_is_a_lost_peer(gateway, peer, until):
     with gateway.connect() as deaf:
+        deaf.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)  # else it takes megabytes to fill
         deaf.ask(gateway.hello(alive=1), "welcome")
         until(lambda: not peer.missing(["a"]))
         with suppress(OSError):
