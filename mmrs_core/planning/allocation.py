@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, dist, inf
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,9 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.materials import Material
+from mmrs_core.planning.orders import OrderSearch
 from mmrs_core.planning.ruin import Search
-from mmrs_core.planning.ruin_loops import Field, Tours
+from mmrs_core.planning.ruin_loops import Field
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.team import Team
@@ -48,8 +50,15 @@ _STEPS_PER_STOP = 40
 _MOST_STEPS = 10_000
 _ROUNDS = 2
 
+_MOST_ORDERS = 1500
+_MOST_LOOKS = 2_000_000
+"""Orders that are tried at most where jobs wait for others, and pairs of stop and robot in all of them."""
+
 _PIECES_PER_TOUR = 3
 """Pieces of a mean tour into which work that robots may share is cut."""
+
+if TYPE_CHECKING:
+    from mmrs_core.planning.ruin_loops import Reals, Wholes
 
 Matrix = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -90,7 +99,8 @@ def allocated(
         steps = min(_MOST_STEPS, _STEPS_PER_STOP * len(stops))
         for makespan in search.run(effort.shares(steps, of_the_rest=long / (rounds - turn))):
             effort.found(makespan)
-        decisions = replace(_decisions(team, jobs, stops, search.best), in_turns=in_turns)
+        best = search.best
+        decisions = replace(_decisions(team, jobs, stops, best.begins, best.robot), in_turns=in_turns)
         found = schedule(team, jobs, decisions)
         yield decisions, found
         if isinstance(found, Shortfall):
@@ -99,6 +109,24 @@ def allocated(
         ready = {job.name: max((ends.get(name, 0.0) for name in job.after), default=0.0) for job in jobs}
         later = [max(own, ready[stop.job]) for own, stop in zip(earliest, stops, strict=True)]
         field = field._replace(earliest=np.array(later))
+    steps = min(_MOST_ORDERS, _MOST_LOOKS // len(field.out))
+    if waits and not in_turns and steps:
+        orders = OrderSearch(field._replace(earliest=earliest), _before(jobs, stops), seed)
+        for makespan in orders.run(effort.shares(steps)):
+            effort.found(makespan)
+        decisions = _decisions(team, jobs, stops, orders.best.starts, orders.best.robots)
+        yield decisions, schedule(team, jobs, decisions)
+
+
+def _before(jobs: Sequence[Job], stops: Sequence[_Stop]) -> list[list[int]]:
+    """Return, by stop, those that it waits for; for a choice, those that the choice waits for."""
+    mine: dict[str, list[int]] = {}
+    for i, stop in enumerate(stops):
+        mine.setdefault(stop.job, []).append(i)
+    known: dict[str, list[int]] = {}
+    for job in jobs:
+        known[job.name] = sorted({i for name in job.after for i in mine.get(name, known[name])})
+    return [known[stop.job] for stop in stops]
 
 
 def _stops(team: Team, jobs: Sequence[Job]) -> Iterator[_Stop]:
@@ -121,14 +149,16 @@ def _seconds(team: Team, task: str) -> float:
     return max((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
 
 
-def _decisions(team: Team, jobs: Sequence[Job], stops: Sequence[_Stop], tours: Tours) -> Decisions:
-    """Return the decisions of tours: jobs as early as they begin there, those with priority first."""
+def _decisions(
+    team: Team, jobs: Sequence[Job], stops: Sequence[_Stop], starts: Reals, whose: Wholes
+) -> Decisions:
+    """Return decisions: jobs as early as their stops begin, those with priority first."""
     priority = {task.name: task.priority for task in team.scene.tasks}
     ranks = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
     begins, robots = dict[str, float](), dict[str, set[int]]()
     for i, stop in enumerate(stops):
-        begins[stop.job] = min(begins.get(stop.job, inf), tours.begins[i])
-        robots.setdefault(stop.job, set()).add(tours.robot[i])
+        begins[stop.job] = min(begins.get(stop.job, inf), starts[i])
+        robots.setdefault(stop.job, set()).add(whose[i])
     order = sorted((job.name for job in jobs), key=lambda name: (-ranks[name], begins.get(name, 0.0)))
     names = list(team.pilots)
     groups = {job: tuple(names[i] for i in sorted(mine)) for job, mine in robots.items()}

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from random import Random
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -48,10 +49,7 @@ class Search:
             weights: of the longest tour, and of the mean of all.
         """
         n, m = field.sizes[:2]
-        self._loops: Any = compiled(ruin_loops, arrays=False) if n >= _MANY and can_compile() else ruin_loops
-        listed = self._loops is ruin_loops
-        arrays: tuple[Any, ...] = field
-        self._field = Field(*(each.tolist() for each in arrays)) if listed and n <= _DENSE else field
+        self._loops, self._field, listed = loops_for(field, ruin_loops)
         self._weights = weights
         whole = [np.zeros(count, np.int64) for count in (1, n, m + 1, m, m + 1, m)]
         random, gone, *rest = [each.tolist() if listed else each for each in whole]
@@ -87,6 +85,14 @@ class Search:
             self._loops.anneal(
                 self._field, self._now, self._other, self.best, self._room, *self._weights, heat, steps
             )
+
+
+def loops_for(field: Field, module: ModuleType) -> tuple[Any, Field, bool]:
+    """Return the functions of a module, a field as they take it, and whether they take lists, not arrays."""
+    n, arrays = field.sizes[0], tuple[Any, ...](field)
+    if n >= _MANY and can_compile():
+        return compiled(module, arrays=False), field, False
+    return module, Field(*(each.tolist() for each in arrays)) if n <= _DENSE else field, True
 
 
 def stops_of(tours: Tours, robot: int) -> Iterator[int]:
