@@ -6,7 +6,9 @@ OR-tools begins with parallel cheapest insertion and goes on with guided local s
 weights of the longest tour. PyVRP has no such aim: the allowed length of a tour is bisected, between the
 longest one without it and a lower bound. Of both, the best tours count, measured again. With a folder of
 MTSPLib's min-max cases (tsp/*.tsp, reference_literature.csv), tours are compared with the published upper
-bounds, too. The peers run in an interpreter of their own, with packages that the project does not need.
+bounds, too. Tasks at one place that wait for each other, as in stages of forks and joins or by dependencies
+at random, are planned whole and compared with CP-SAT's optimum, or the best that it found in a minute. The
+peers run in an interpreter of their own, with packages that the project does not need.
 
     python -m venv peers
     peers/bin/pip install ortools==9.15.6755 pyvrp==0.14.1 numpy
@@ -26,12 +28,18 @@ import warnings
 from datetime import date
 from math import dist, inf
 from pathlib import Path
+from random import Random
 from time import process_time
 
 import numpy as np
 
 SIZES = ((3, 20, 2.0, 5), (20, 200, 10.0, 3), (100, 2000, 30.0, 1))
 """Robots, stops, seconds of CPU for each, and how many seeds."""
+
+WAITING = ((3, 20, 3), (4, 50, 3), (8, 200, 3))
+"""Robots, tasks, and how many seeds of each sort."""
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 
 SIDE, SCALE = 2000.0, 100
 SPANS = (1, 100, 10_000)
@@ -45,10 +53,10 @@ def main() -> None:
     parser.add_argument("--mtsplib", type=Path, help="folder of MTSPLib's min-max cases")
     parser.add_argument("--seconds", type=float, default=5.0, help="for each of these")
     parser.add_argument("--sizes", type=int, nargs="*", default=[0, 1, 2], help="which sizes")
-    parser.add_argument("--peer", choices=PEERS, help=argparse.SUPPRESS)
+    parser.add_argument("--peer", choices=SOLVERS, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.peer:
-        print(json.dumps(PEERS[given.peer](json.load(sys.stdin))))
+        print(json.dumps(SOLVERS[given.peer](json.load(sys.stdin))))
         return
     machine = f"{platform.machine()}, {os.cpu_count()} cores, one thread each"
     print(f"allocation, {date.today().isoformat()}, seed {given.seed}, {machine}")
@@ -65,6 +73,8 @@ def main() -> None:
             row = "".join(f"{each:10.1f}" for each in (bound(case), ours, *theirs))
             gain = f"{100.0 * (1.0 - ours / min(theirs)):8.1f} %" if theirs else ""
             print(f"{m:6}{n:7}{seed:5}{seconds:7.0f}{row}   {gain}", flush=True)
+    if given.peers:
+        against_optimum(given.peers, given.seed)
     if given.mtsplib:
         against_bounds(given.mtsplib, given.seconds, given.seed)
 
@@ -130,6 +140,69 @@ def field(case: dict):
     )
 
 
+def against_optimum(python: Path, seed: int) -> None:
+    print("\ntasks that wait for each other: makespan in seconds, and by how much it is above CP-SAT's")
+    print(
+        f"{'robots':>6}{'tasks':>7}  {'waits':<8}{'seed':>5}{'mmrs':>9}{'CPU s':>8}{'CP-SAT':>9}{'above':>9}"
+    )
+    for m, n, seeds in WAITING:
+        for sort in ("stages", "random"):
+            for each in range(seed, seed + seeds):
+                case = waiting(m, n, each, sort)
+                begun = process_time()
+                ours = planned(case)
+                spent = process_time() - begun
+                best, proved = peer("CP-SAT", case, python)
+                row = f"{m:6}{n:7}  {sort:<8}{each:5}{ours:9.0f}{spent:8.2f}{best:9.0f}"
+                print(
+                    f"{row}{100.0 * (ours / best - 1.0):7.2f} %{'' if proved else '  not proved'}", flush=True
+                )
+
+
+def waiting(m: int, n: int, seed: int, sort: str) -> dict:
+    """Return seconds of tasks and who waits for whom: all for a whole stage, or for some a little before."""
+    random = Random(f"{m} {n} {seed} {sort}")
+    seconds, pairs, last, k = [random.randint(10, 200) for _ in range(n)], [], [], 0
+    while k < n:
+        stage = list(range(k, min(n, k + (random.randint(1, 3 * m) if sort == "stages" else 1))))
+        near = range(max(0, k - 3 * m), k)
+        before = last if sort == "stages" else random.sample(near, min(k, random.randint(0, 2)))
+        pairs += [(one, two) for one in before for two in stage]
+        last, k = stage, stage[-1] + 1
+    return {"robots": m, "tasks": seconds, "pairs": pairs}
+
+
+def planned(case: dict) -> float:
+    from plain_scenes import CRAWLER, robot, scene, visit
+
+    from mmrs_core.planning.planner import plan
+
+    robots = [robot(f"r{k}", kinematics=CRAWLER) for k in range(case["robots"])]
+    works = {f"t{k}": visit((0.0, 0.0, 0.0), hold=float(each)) for k, each in enumerate(case["tasks"])}
+    return plan(scene(robots, works, after=[(f"t{one}", f"t{two}") for one, two in case["pairs"]])).makespan
+
+
+def cp_sat(case: dict) -> tuple[float, bool]:
+    from ortools.sat.python import cp_model
+
+    model, most = cp_model.CpModel(), sum(case["tasks"])
+    begins = [model.new_int_var(0, most, "") for _ in case["tasks"]]
+    spans = [
+        model.new_fixed_size_interval_var(begin, each, "")
+        for begin, each in zip(begins, case["tasks"], strict=True)
+    ]
+    model.add_cumulative(spans, [1] * len(spans), case["robots"])
+    end = model.new_int_var(0, most, "")
+    model.add_max_equality(end, [begin + each for begin, each in zip(begins, case["tasks"], strict=True)])
+    for one, two in case["pairs"]:
+        model.add(begins[two] >= begins[one] + case["tasks"][one])
+    model.minimize(end)
+    solver = cp_model.CpSolver()
+    solver.parameters.max_time_in_seconds, solver.parameters.num_workers = 60.0, 2
+    proved = solver.solve(model) == cp_model.OPTIMAL
+    return solver.objective_value, proved
+
+
 def against_bounds(folder: Path, seconds: float, seed: int) -> None:
     print(f"\nMTSPLib min-max: longest tour by the published upper bound, {seconds:g} s of CPU each")
     bounds: dict[tuple[str, int], float] = {}
@@ -147,11 +220,10 @@ def against_bounds(folder: Path, seconds: float, seed: int) -> None:
     print(f"mean {np.mean(found):.4f}, largest {max(found):.4f}")
 
 
-def peer(name: str, case: dict, python: Path) -> list[list[int]]:
+def peer(name: str, case: dict, python: Path):
     command = [python, __file__, "--peer", name]
     done = subprocess.run(command, input=json.dumps(case), stdout=subprocess.PIPE, text=True, check=True)
-    found: list[list[int]] = json.loads(done.stdout)
-    return found
+    return json.loads(done.stdout)
 
 
 def whole_metres(case: dict) -> np.ndarray:
@@ -225,6 +297,7 @@ def _ortools(case: dict, span: int, until: float) -> list[list[int]]:
 
 
 PEERS = {"PyVRP": pyvrp, "OR-tools": ortools}
+SOLVERS = {**PEERS, "CP-SAT": cp_sat}
 
 if __name__ == "__main__":
     main()
