@@ -50,8 +50,8 @@ _STEPS_PER_STOP = 40
 _MOST_STEPS = 10_000
 _ROUNDS = 2
 
-_MOST_ORDERS = 1500
-_MOST_LOOKS = 2_000_000
+_ORDERS_PER_STOP = 75
+_MOST_LOOKS = 8_000_000
 """Orders that are tried at most where jobs wait for others, and pairs of stop and robot in all of them."""
 
 _PIECES_PER_TOUR = 3
@@ -109,7 +109,7 @@ def allocated(
         ready = {job.name: max((ends.get(name, 0.0) for name in job.after), default=0.0) for job in jobs}
         later = [max(own, ready[stop.job]) for own, stop in zip(earliest, stops, strict=True)]
         field = field._replace(earliest=np.array(later))
-    steps = min(_MOST_ORDERS, _MOST_LOOKS // len(field.out))
+    steps = min(_ORDERS_PER_STOP * len(stops), _MOST_LOOKS // len(field.out))
     if waits and not in_turns and steps:
         orders = OrderSearch(field._replace(earliest=earliest), _before(jobs, stops), seed)
         for makespan in orders.run(effort.shares(steps)):

@@ -56,7 +56,7 @@ def refuse_blocked(robot: Robot, scene: Scene, points: Sequence[Position], what:
     Raises:
         InfeasibleError: it does not; names the area and what is short.
     """
-    for area in scene.kept_from(robot):
+    for area in _around(robot, scene, points):
         short = area.safety_distance + robot.clearance - _distance(points, area)
         if short > SLACK:
             raise InfeasibleError(f"{what} comes {lengths(short)[0]} too near to '{area.name}'")
@@ -88,8 +88,20 @@ def _distance(points: Sequence[Position], area: Area) -> float:
 def _is_clear(robot: Robot, scene: Scene, points: Sequence[Position]) -> bool:
     return all(
         _distance(points, area) >= MARGIN * (area.safety_distance + robot.clearance)
-        for area in scene.kept_from(robot)
+        for area in _around(robot, scene, points)
     )
+
+
+def _around(robot: Robot, scene: Scene, points: Sequence[Position]) -> Iterator[Area]:
+    """Yield the areas that a robot keeps away from, less those whose rectangles are far enough away."""
+    east, north = ([point[axis] for point in points] for axis in (0, 1))
+    west_end, east_end, south_end, north_end = min(east), max(east), min(north), max(north)
+    for area in scene.kept_from(robot):
+        keeps = area.safety_distance + robot.clearance
+        x, y = ([corner[axis] for corner in area.shell] for axis in (0, 1))
+        aside = max(min(x) - east_end, west_end - max(x), min(y) - north_end, south_end - max(y))
+        if aside <= keeps:
+            yield area
 
 
 def bearing_of_homes(scene: Scene, point: Position) -> float:
