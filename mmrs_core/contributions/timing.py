@@ -46,7 +46,9 @@ def as_uploaded(kinds: Mapping[Name, RobotKind]) -> dict[Name, RobotKind]:
 
 
 def _uploaded(of: Callable[[Robot, Scene], Kinematics], robot: Robot, scene: Scene) -> Kinematics:
-    return replace(of(robot, scene).in_mission(), mission=None)
+    whole = of(robot, scene).in_mission()
+    launch, recovery = (max(0.0, each - whole.noticing) for each in (whole.launch, whole.recovery))
+    return replace(whole, mission=None, launch=launch, recovery=recovery)
 
 
 def _kinematics(
@@ -67,6 +69,7 @@ def _kinematics(
         descent=step.descent,
         launch=_first(capability.launch, autopilot.launch, plain.launch),
         recovery=_first(capability.recovery, autopilot.recovery, plain.recovery),
+        noticing=autopilot.noticing,
         landing_rate=landing_rate,
         landing_height=landing_height if landing_rate < inf else 0.0,
         rounds=autopilot.rounds,

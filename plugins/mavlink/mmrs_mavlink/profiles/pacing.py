@@ -184,6 +184,7 @@ PX4_COPTER = AutopilotTiming(
     upright=replace(_PX4_STEP, climb=1.5, settling=0.0),
     launch=6.3,
     recovery=7.0,
+    noticing=2.5,
     landing_rate=0.7,
     landing_height=10.0,
     turn_rate=45.0,
