@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -57,12 +58,18 @@ class Passages:
         self._index = {move.id: index for index, move in enumerate(robot.moves)}
         runs = runs_of(robot, move_kinds) if self._careful and not local else ()
         self._uploaded = frozenset(index for run in runs for index in run)
+        late = replace(self._mission.timing, settling=self._mission.timing.settling + kinematics.noticing)
+        self._ending = replace(self._mission, timing=late)
+        self._lasts = frozenset(run[-1] for run in runs)
         self._stops = kinematics.turning_radius <= 0.0
         self._held = frozenset(run[0] for run in runs if self._stops)
 
     def kinematics(self, move: Move) -> Kinematics:
         """Return what the robot can do in a move."""
-        return self._mission if self._index[move.id] in self._uploaded else self._kinematics
+        index = self._index[move.id]
+        if index in self._lasts:
+            return self._ending
+        return self._mission if index in self._uploaded else self._kinematics
 
     def facing(self, move: Move, path: tuple[Position, ...], before: float | None) -> float | None:
         """Return where the robot looks after a move that it ends with a stop, degrees clockwise from north.

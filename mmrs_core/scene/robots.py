@@ -149,7 +149,7 @@ class Kinematics:
         turn_rate: degrees per second.
         floor, ceiling: heights above the origin between which the robot may move, metres.
         launch: seconds that launching takes beside the climb; recovery: likewise for landing.
-        noticing: seconds of each of these that pass until a program notices its end.
+        noticing: seconds of each of these, and of a run's last leg, until a program notices its end.
         landing_rate: metres per second of the descent below `landing_height`, metres above the ground.
         endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
         energy: usable joules of one sortie, reserve taken off; inf for wired robots.

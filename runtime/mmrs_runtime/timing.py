@@ -106,8 +106,8 @@ class AutopilotTiming:
         upright: legs of launching and landing; None: these are taken as steps are.
         launch: seconds that launching takes beside the climb; None: as its kind says.
         recovery: seconds from touching the ground until it stands still; None: as its kind says.
-        noticing: seconds of launching, and of landing, until a program notices its end: none where all is
-            a mission that was uploaded.
+        noticing: seconds of launching, of landing, and of the last leg of a run that is flown as a mission,
+            until a program notices its end: none where all is one mission that was uploaded.
         landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
         rounds: whether a vehicle that cannot turn on the spot drives round instead of shunting.
         turn_rate: largest, degrees per second.

@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off
 
 from mmrs_core.analysis.durations import durations_of
+from mmrs_core.analysis.figures import kinematics_of
 from mmrs_core.analysis.motion import motions
 from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.passages import Passages
 from mmrs_core.scene import Capability, Kinematics
 from mmrs_core.scene.timing import Rates
 from mmrs_core.testing.programs import installed, move, program
@@ -150,21 +152,36 @@ def test_a_type_that_states_less_acceleration_goes_no_less_beyond_its_targets():
     assert slow.beyond(HERE, (12.0, 0.0, 20.0), 6.0)[0] >= 12.79
 
 
-def bounds(*moves, **movement):
-    """Return the bounds of the moves of a robot between take-off and landing, by the check."""
-    contributions = installed()
-    robot = robot_program("alpha", [take_off("up", 20.0), *moves, LAND])
-    kind = quad()
+def checked(robot, **movement):
+    """Return the input of the check of a quadcopter."""
+    contributions, kind = installed(), quad()
     kind = replace(
         kind,
         part=replace(kind.part, attributes={"maxAltitude": 120.0}),
         capabilities=tuple(replace(each, **movement) for each in kind.capabilities),
     )
-    given = CheckInput(
-        program(robot), {kind.name: kind}, contributions.robot_kinds, contributions.move_kinds, ()
-    )
+    kinds = contributions.robot_kinds, contributions.move_kinds
+    return CheckInput(program(robot), {kind.name: kind}, *kinds, ())
+
+
+def bounds(*moves, **movement):
+    """Return the bounds of the moves of a robot between take-off and landing, by the check."""
+    robot = robot_program("alpha", [take_off("up", 20.0), *moves, LAND])
+    given = checked(robot, **movement)
     found = durations_of(given, robot, motions(given)["alpha"]).of
     return {robot.moves[index].id: each for index, each in found.items()}
+
+
+def test_the_last_leg_of_a_run_takes_until_the_program_notices():
+    """PX4s took two seconds longer for it in each of seven flights."""
+    legs = [go_to(f"m{north}", (0.0, north, 20.0)) for north in (20.0, 40.0, 60.0)]
+    robot = robot_program("alpha", [take_off("up", 20.0), *legs, LAND])
+    fluid = {index: replace(robot.transitions[index], fluid=True) for index in (2, 3)}
+    robot, given = replace(robot, transitions={**robot.transitions, **fluid}), checked(robot)
+    kinematics = replace(kinematics_of(given, robot), noticing=2.5)
+    passages = Passages(robot, given.move_kinds, kinematics, local=False)
+    first, middle, last = (passages.kinematics(leg).timing.settling for leg in legs)
+    assert (middle - first, last - middle) == (0.0, 2.5)
 
 
 def on_the_spot(name, **attributes):
