@@ -60,7 +60,9 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     """
     jobs = jobs_of(scene)
     team = Team(scene)
-    _refuse([*team.shortfalls(), *_shared_choices(scene, jobs)], "no plan")
+    if short := [*team.shortfalls(), *_shared_choices(scene, jobs)]:
+        able = [job for job in jobs if all(map(team.able, job.tasks()))]
+        _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
     teams, effort = _Remembered(teams_to_try(team)), effort or Effort()
     effort.least = least_makespan(team, jobs)
     find = partial(find_decisions, jobs=jobs, effort=effort)
@@ -302,7 +304,7 @@ def _words(what: str, reasons: Sequence[str]) -> str:
 
 def _reasons(team: Team, jobs: Sequence[Job], found: Shortfall) -> list[str]:
     """Return what is short for the job that could not be done, and for all others that are alike."""
-    reasons = [too_long(team, task) for job in jobs for task in job.tasks() if team.too_long(task)]
+    reasons = too_long(team, jobs)
     if reasons:
         return reasons
     job = next(job for job in jobs if job.name == found.job)

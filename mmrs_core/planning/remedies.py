@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import ceil, dist, floor, inf
 
@@ -48,19 +48,66 @@ def counted(robots: int) -> str:
     return f"{robots} robot{'' if robots == 1 else 's'}"
 
 
-def too_long(team: Team, task: str) -> str:
-    """Return why a task fits into no sortie of any robot, and what would do for the best of them."""
-    worst = {name: _worst(team, task, name) for name in team.able(task)}
-    name = min(worst, key=lambda each: worst[each][0], default="")
-    why = "; ".join(team.short_of_charge(task))
-    if not name:
-        return f"task '{task}' is left to no robot"
-    short, index = worst[name]
-    if short == inf:
-        remedies = [*_passages(team, task, why)]
-        return f"task '{task}' can be reached by no robot ({why}){or_else(remedies)}"
-    remedies = [*_for_long_sorties(team, task, name, short, index)]
-    return f"task '{task}' is too long for every robot ({why}){or_else(remedies)}"
+def too_long(team: Team, jobs: Sequence[Job]) -> list[str]:
+    """Return why tasks fit into no sortie of any robot, and what would do for the best of them."""
+    tasks = [task for job in jobs for task in job.tasks() if team.too_long(task)]
+    worst = {task: _best(team, task) for task in tasks}
+    lifetimes, charging = _lifetimes(team, jobs, worst.values())
+    reasons = []
+    for task, (name, short, index) in worst.items():
+        why = "; ".join(team.short_of_charge(task))
+        if not name:
+            reasons.append(f"task '{task}' can be done by no robot ({team.why_not(task)})")
+            continue
+        if short == inf:
+            remedy = or_else([*_passages(team, task, why)])
+            reasons.append(f"task '{task}' can be reached by no robot ({why}){remedy}")
+            continue
+        remedies = [*_homes(team, jobs, task, name, index)]
+        if name in lifetimes:
+            now = _lifetime(team.scene, team.scene.robot(name))
+            remedies.insert(0, f"a lifetime of {lifetimes[name]} s (now {now:.0f} s){charging}")
+        remedies[:1] = [f"for '{name}', {each}" for each in remedies[:1]]
+        reasons.append(f"task '{task}' is too long for every robot ({why}){or_else(remedies)}")
+    return reasons
+
+
+def _best(team: Team, task: str) -> tuple[str, float, int]:
+    """Return the robot that is least short of charge for a task: by how many seconds, for which portion."""
+    found = [(*_worst(team, task, name), name) for name in team.able(task)]
+    short, index, name = min(found, key=lambda each: each[0], default=(inf, 0, ""))
+    return name, short, index
+
+
+def _lifetimes(
+    team: Team, jobs: Sequence[Job], worst: Iterable[tuple[str, float, int]]
+) -> tuple[dict[str, int], str]:
+    """Return by robot the lifetime with which all jobs would be done, seconds, and what else it takes.
+
+    They are none where lifetimes do not help.
+    """
+    scene, needed = team.scene, dict[str, int]()
+    for name, short, _ in worst:
+        lifetime = _lifetime(scene, scene.robot(name)) if name else inf
+        if inf in (lifetime, short):
+            return {}, ""
+        limit = team.pilots[name].limit
+        needed[name] = max(needed.get(name, 0), ceil(lifetime * (limit + short) / limit - 1e-6))
+    if len(jobs) * len(scene.robots) > _MOST_PAIRS:
+        return needed, ""
+
+    def plannable(factor: float, change: Callable[[Robot], Robot] = lambda robot: robot) -> bool:
+        def changed(robot: Robot) -> Robot:
+            return _lasting(change(robot), factor * needed[robot.name] / _lifetime(scene, robot))
+
+        return _plannable(_with(scene, [*needed], changed), jobs)
+
+    if plannable(1.0):
+        return needed, ""
+    enough = _least(plannable)
+    if enough is not None:
+        return {name: ceil(seconds * enough) for name, seconds in needed.items()}, ""
+    return (needed, " together with a rechargeTime") if plannable(1.0, _rechargeable) else ({}, "")
 
 
 def _passages(team: Team, task: str, why: str) -> Iterator[str]:
@@ -73,13 +120,9 @@ def _passages(team: Team, task: str, why: str) -> Iterator[str]:
             yield f"for '{name}' a passage through {' or '.join(opened)}"
 
 
-def _for_long_sorties(team: Team, task: str, name: str, short: float, index: int) -> Iterator[str]:
-    """Yield what would make a task fit into sorties of a robot."""
-    robot, limit = team.scene.robot(name), team.pilots[name].limit
-    lifetime = _lifetime(team.scene, robot)
-    longer = ceil(lifetime * (limit + short) / limit - 1e-6) if lifetime < inf else 0
-    if longer and _fits(team, task, _lasting(robot, longer / lifetime)):
-        yield f"for '{name}', a lifetime of {longer} s (now {lifetime:.0f} s)"
+def _homes(team: Team, jobs: Sequence[Job], task: str, name: str, index: int) -> Iterator[str]:
+    """Yield the home next to a robot's own from which a task fits into its sorties, if all jobs then do."""
+    scene, robot = team.scene, team.scene.robot(name)
     material = team.forwards(task, name)
     goal = material.first(index) if material is not None else robot.home
     away = dist(goal[:2], robot.home[:2])
@@ -88,10 +131,12 @@ def _for_long_sorties(team: Team, task: str, name: str, short: float, index: int
         east, north = (b + (a - b) * metres / away for a, b in zip(robot.home[:2], goal[:2], strict=True))
         return replace(robot, home=(round(east), round(north), robot.home[2]))
 
-    if away > 0.0 and _fits(team, task, nearer(0.0)):
-        metres = _last(lambda share: _fits(team, task, nearer(share)), 0.0, away)
-        home = nearer(floor(metres)).home
-        yield f"a home at ({home[0]:.0f}, {home[1]:.0f}), {dist(home[:2], goal[:2]):.0f} m away,"
+    if away > 0.0 and len(jobs) * len(scene.robots) <= _MOST_PAIRS and _fits(team, task, nearer(0.0)):
+        metres = floor(_last(lambda share: _fits(team, task, nearer(share)), 0.0, away))
+        home = nearer(metres).home
+        if _plannable(_with(scene, [name], lambda _: nearer(metres)), jobs):
+            far = dist(home[:2], goal[:2])
+            yield f"a home at ({home[0]:.0f}, {home[1]:.0f}), {far:.0f} m away,"
 
 
 def for_times(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:

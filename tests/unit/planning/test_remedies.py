@@ -58,6 +58,20 @@ def test_a_lifetime_that_is_proposed_is_enough_and_two_seconds_less_are_not(whol
     refusal(with_robots(whole, endurance=USABLE * (int(lifetime) - 2.0), energy=1e9))
 
 
+def test_lifetimes_that_are_proposed_for_long_tasks_are_enough_for_the_whole_mission():
+    works = {"far": visit((600.0, 0.0, 20.0)), "field": FOLDED}
+    whole = scene([with_kinematics(robot(), endurance=90.0, recharge=None)], works)
+    with pytest.raises(InfeasibleError) as caught:
+        plan(whole)
+    lifetimes = [
+        re.findall(r"for 'r1', a lifetime of (\d+) s \(now 112 s\) would do", each)
+        for each in caught.value.reasons
+    ]
+    assert len(lifetimes) == 2
+    assert lifetimes[0] == lifetimes[1]
+    assert plan(with_robots(whole, endurance=USABLE * int(lifetimes[0][0]), energy=1e9))
+
+
 def test_a_home_that_is_proposed_is_near_enough_and_two_metres_before_is_not():
     whole = scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))})
     ((east, away),) = re.findall(r"a home at \((\d+), 0\), (\d+) m away", refusal(whole))
