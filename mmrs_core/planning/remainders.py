@@ -7,7 +7,7 @@ the ground that it covers; elsewhere when they have done the same stretch, see `
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
@@ -28,6 +28,9 @@ _ROUNDING = 1e-6
 """Share of a part's ground, and length of a stretch, that are rounding."""
 
 Shapes: TypeAlias = NDArray[np.object_]
+_Part: TypeAlias = tuple[int, int]
+"""A sort, and the index of a part of its work."""
+
 _Stretch: TypeAlias = tuple[str | tuple[Position, ...], float, float]
 """Which part of the task, and from where to where of it."""
 
@@ -69,7 +72,7 @@ class Remainders:
         self._over_ground = all(work.coverage is not None for work in works)
         self._works = works
         self._ground: dict[int, Shapes] = {}
-        self._covered: dict[tuple[int, int, tuple[tuple[int, int], ...]], bool] = {}
+        self._patches: dict[_Part, list[frozenset[_Part]]] = {}
         self._under: dict[tuple[int, int], list[list[int]]] = {}
 
     def left(self, sort: int, before: Sequence[Turn]) -> frozenset[int]:
@@ -80,23 +83,36 @@ class Remainders:
         return frozenset(found)
 
     def _bare(self, sort: int, before: Sequence[Turn]) -> Iterator[int]:
+        """Yield the parts under which some ground is not covered by what others have done."""
+        done = {(turn.sort, part) for turn in before for part in turn.done}
         for part in range(len(self.parts[sort])):
-            covering = tuple(
-                (turn.sort, other)
-                for turn in before
-                for other in self._under_of(sort, turn.sort)[part]
-                if other in turn.done
-            )
-            if not self._is_covered(sort, part, covering):
+            if any(done.isdisjoint(by) for by in self._patches_of(sort, part)):
                 yield part
 
-    def _is_covered(self, sort: int, part: int, covering: tuple[tuple[int, int], ...]) -> bool:
-        """Return whether parts of other sorts cover all ground under a part."""
-        key = (sort, part, covering)
-        if key not in self._covered:
-            shapes = [self._ground_of(other)[each] for other, each in covering]
-            self._covered[key] = bool(shapes) and not _uncovered(self._ground_of(sort)[part], shapes)
-        return self._covered[key]
+    def _patches_of(self, sort: int, part: int) -> list[frozenset[_Part]]:
+        """Return, for each patch of the ground under a part, the parts of other sorts that cover it.
+
+        Patches that are covered wherever another one is are left out, and those that are rounding.
+        """
+        if (sort, part) not in self._patches:
+            own, alike = self._ground_of(sort)[part], dict[bytes, set[_Part]]()
+            for other in range(len(self.parts)):
+                for each in self._under_of(sort, other)[part] if other != sort else ():
+                    alike.setdefault(shapely.to_wkb(self._ground_of(other)[each]), set()).add((other, each))
+            shapes = shapely.from_wkb(list(alike))
+            edges = shapely.intersection(shapely.boundary(shapes), own)
+            edges = shapely.union_all([shapely.boundary(own), *edges], grid_size=GRID)
+            patches = shapely.get_parts(shapely.polygonize(shapely.get_parts(edges)))
+            patches = patches[np.argsort(shapely.area(patches), kind="stable")]
+            whole = np.cumsum(shapely.area(patches)) > _ROUNDING * (1.0 + own.area)
+            inside = shapely.point_on_surface(patches[whole])
+            inside = inside[shapely.covers(own, inside)]
+            by: list[set[_Part]] = [set() for _ in inside]
+            for others, shape in zip(alike.values(), shapes, strict=True):
+                for index in np.flatnonzero(shapely.covers(shape, inside)).tolist():
+                    by[index] |= others
+            self._patches[sort, part] = _smallest(map(frozenset, by))
+        return self._patches[sort, part]
 
     def _ground_of(self, sort: int) -> Shapes:
         """Return what each part of a sort's work covers of its target."""
@@ -139,9 +155,13 @@ class Remainders:
                 yield part
 
 
-def _uncovered(ground: BaseGeometry, covered: Sequence[BaseGeometry]) -> bool:
-    rest = shapely.difference(ground, shapely.union_all(covered, grid_size=GRID), grid_size=GRID)
-    return bool(rest.area > _ROUNDING * (1.0 + ground.area))
+def _smallest(sets: Iterable[frozenset[_Part]]) -> list[frozenset[_Part]]:
+    """Return those sets that hold no other one."""
+    found: list[frozenset[_Part]] = []
+    for each in sorted(set(sets), key=len):
+        if not any(other <= each for other in found):
+            found.append(each)
+    return found
 
 
 def _ground(part: Stroke, coverage: Coverage) -> BaseGeometry:
