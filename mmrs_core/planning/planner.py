@@ -213,19 +213,19 @@ def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team
     """
     altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
     if altitudes:
-        yield Team(team.scene, fine=team.fine, homebound=team.homebound, altitudes=altitudes), False
+        yield team.changed(team.homebound, altitudes=altitudes), False
     if error is None:
         return
     if error.at_home:
-        yield Team(team.scene, fine=team.fine, homebound=team.homebound, from_homes=least), False
+        yield team.changed(team.homebound, from_homes=least), False
     before = team.scene.robots
     for names in dict.fromkeys((error.robots, frozenset(team.pilots))):
         robots = tuple(replace(robot, return_home=True) if robot.name in names else robot for robot in before)
         if robots != before:
-            yield Team(replace(team.scene, robots=robots), fine=team.fine, from_homes=least), False
+            yield team.changed(None, robots=robots, from_homes=least), False
     everyone = frozenset(team.pilots)
-    yield Team(team.scene, fine=team.fine, homebound=everyone), True
-    yield Team(team.scene, fine=team.fine, homebound=everyone, from_homes=least), True
+    yield team.changed(everyone), True
+    yield team.changed(everyone, from_homes=least), True
 
 
 def _plan_of(

@@ -100,8 +100,8 @@ class Remainders:
                 for each in self._under_of(sort, other)[part] if other != sort else ():
                     alike.setdefault(shapely.to_wkb(self._ground_of(other)[each]), set()).add((other, each))
             shapes = shapely.from_wkb(list(alike))
-            edges = shapely.intersection(shapely.boundary(shapes), own)
-            edges = shapely.union_all([shapely.boundary(own), *edges], grid_size=GRID)
+            inner = shapely.intersection(shapely.boundary(shapes), own)
+            edges = shapely.union_all([shapely.boundary(own), *inner], grid_size=GRID)
             patches = shapely.get_parts(shapely.polygonize(shapely.get_parts(edges)))
             patches = patches[np.argsort(shapely.area(patches), kind="stable")]
             whole = np.cumsum(shapely.area(patches)) > _ROUNDING * (1.0 + own.area)

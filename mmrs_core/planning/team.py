@@ -46,6 +46,7 @@ class Team:
         scene: expanded.
         fine: whether works are divided as finely as can be.
         homebound: names of the robots that always keep enough to go home.
+        spaces: of its robots.
         pilots: by name of robot, in the scene's order.
         groups: by name of task: robots that can do it, by sort of work, which cameras with different
             footprints or different clearances make.
@@ -64,6 +65,7 @@ class Team:
         homebound: frozenset[str] | None = None,
         altitudes: Mapping[str, float] | None = None,
         from_homes: float | None = None,
+        spaces: Spaces | None = None,
     ) -> None:
         """Lay everything out.
 
@@ -73,14 +75,18 @@ class Team:
             homebound: names of the robots that always keep enough to go home; None: see `homebound_of`.
             altitudes: of transit, by robot; None: the scene's for all.
             from_homes: metres that robots keep from the homes of others; None: see `Spaces`.
+            spaces: of another team of the same robots; None: new ones.
         """
         self.scene, self.fine = scene, fine
+        self.spaces = spaces or Spaces(scene, from_homes=from_homes)
         self.homebound = homebound_of(scene) if homebound is None else homebound
-        spaces, aloft = Spaces(scene, from_homes=from_homes), altitudes or {}
+        aloft = altitudes or {}
         fluid, answering = scene.minimum_separation is None, _answering_share(scene)
         self.pilots: Mapping[str, Pilot] = {
             robot.name: Pilot(
-                Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude), fluid=fluid),
+                Travel(
+                    robot, self.spaces.of(robot), aloft.get(robot.name, scene.transit_altitude), fluid=fluid
+                ),
                 homebound=robot.name in self.homebound,
                 answering=answering,
             )
@@ -89,6 +95,7 @@ class Team:
         self.kinds = _kinds_of(scene, self.pilots)
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
+        self._others: dict[tuple[object, ...], Team] = {}
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self._refusals = dict[tuple[str, str], str]()
         self._members = dict[tuple[str, ...], dict[str, tuple[str, ...]]]()
@@ -170,7 +177,30 @@ class Team:
                 able = tuple(name for name in able if name not in names)
         return WorkGroup(work, able, layout)
 
-    def wanting(self, wanted: Mapping[str, int]) -> Team:
+    def changed(
+        self,
+        homebound: frozenset[str] | None,
+        *,
+        robots: tuple[Robot, ...] | None = None,
+        altitudes: Mapping[str, float] | None = None,
+        from_homes: float | None = None,
+    ) -> Team:
+        """Return a team that does the same tasks in another way, made once; arguments as for a new one."""
+        robots = self.scene.robots if robots is None else robots
+        returning = tuple(robot.return_home for robot in robots)
+        key = (homebound, returning, altitudes is None, from_homes)
+        if key not in self._others:
+            self._others[key] = Team(
+                replace(self.scene, robots=robots),
+                fine=self.fine,
+                homebound=homebound,
+                altitudes=altitudes,
+                from_homes=from_homes,
+                spaces=self.spaces if from_homes is None else None,
+            )
+        return self._others[key].wanting({task.name: task.wanted for task in self.scene.tasks})
+
+    def wanting(self, wanted: Mapping[str, int | None]) -> Team:
         """Return the same team, materials and all, where tasks want so many robots."""
         tasks = [replace(task, wanted=wanted.get(task.name, task.wanted)) for task in self.scene.tasks]
         other = copy(self)
