@@ -121,6 +121,7 @@ class _Explaining:
         for self._team in teams_to_try(Team(scene)):
             self._found = schedule(self._team, self._jobs, self._decisions)
             if isinstance(self._found, Schedule):
+                self._ends = _ends_of(self._team, self._found)
                 break
         self._left = _MOST // max(1, len(self._jobs))
         self._stops = dict[str, list[Position]]()
@@ -143,7 +144,7 @@ class _Explaining:
         )
 
     def _task(self, job: Job) -> TaskExplanation:
-        mine, begin, end = self._groups[job.name], self._plan.begins[job.name], self._ends(job)
+        mine, begin, end = self._groups[job.name], self._plan.begins[job.name], self._end_of(job)
         if self._left <= 0 or not isinstance(self._found, Schedule):
             return TaskExplanation(job.name, mine, begin, end, (), {}, tried=False)
         able = [name for name in self._team.pilots if self._able(job, name)]
@@ -157,7 +158,7 @@ class _Explaining:
         tried.sort(key=lambda each: (round(each.later, 1), round(each.longer, 1)))
         return TaskExplanation(job.name, mine, begin, end, tuple(tried), unable)
 
-    def _ends(self, job: Job) -> float:
+    def _end_of(self, job: Job) -> float:
         return max(self._plan.ends.get(name, 0.0) for name in (job.name, *job.tasks()))
 
     def _able(self, job: Job, robot: str) -> bool:
@@ -222,14 +223,15 @@ class _Explaining:
             other = schedule(self._team, self._jobs, decisions)
             if not isinstance(other, Schedule):
                 continue
+            ends = _ends_of(self._team, other)
             broken = next(
                 (f"'{task}' {words}" for task, words, _ in broken_times(self._team, other.spans)), ""
             )
             each = Alternative(
                 names,
-                other.makespan - found.makespan,
+                max(ends) - max(self._ends),
                 other.spans[job.name][1] - found.spans[job.name][1],
-                sum(other.backs.values()) - sum(found.backs.values()),
+                sum(ends) - sum(self._ends),
                 broken,
             )
             best = min(best, each, key=lambda one: (bool(one.fault), round(one.later, 1), one.longer))
@@ -247,7 +249,7 @@ class _Explaining:
             return
         if distance_to_keep(scene) is not None:
             words = f"robots keep {scene.minimum_separation:g} m apart"
-            yield Limit("separation", self._plan.makespan - found.makespan, words)
+            yield Limit("separation", self._plan.makespan - max(self._ends), words)
         if any(job.after for job in self._jobs):
             jobs = [replace(job, after=()) for job in self._jobs]
             yield Limit("dependencies", self._sooner(scene, jobs), _waits_in(critical_path(self._plan)))
@@ -263,10 +265,9 @@ class _Explaining:
 
     def _sooner(self, scene: Scene, jobs: Sequence[Job], decisions: Decisions | None = None) -> float:
         """Return by how many seconds the mission ends sooner in a scene like it."""
-        found = schedule(Team(scene), jobs, decisions or self._decisions)
-        before = self._found
-        assert isinstance(before, Schedule)
-        return max(0.0, before.makespan - found.makespan) if isinstance(found, Schedule) else 0.0
+        team = Team(scene)
+        found = schedule(team, jobs, decisions or self._decisions)
+        return max(0.0, max(self._ends) - max(_ends_of(team, found))) if isinstance(found, Schedule) else 0.0
 
     def _numbers(self) -> Limit:
         tasks = tuple(replace(task, wanted=None) for task in self._scene.tasks)
@@ -322,6 +323,11 @@ def _best_for(robot: str, tasks: Sequence[TaskExplanation]) -> tuple[str, Altern
     """Return the task that a robot could do at the least cost; None if it was tried for none."""
     mine = [(task.task, each) for task in tasks for each in task.alternatives if robot in each.robots]
     return min(mine, key=lambda each: (bool(each[1].fault), each[1].later), default=None)
+
+
+def _ends_of(team: Team, found: Schedule) -> list[float]:
+    """Return when each robot with something to do has finished: where it is, if it need not return."""
+    return [team.pilots[name].finish(found.states[name]).time for name in found.backs]
 
 
 def _longest_sortie(plan: RobotPlan, *, launches: bool) -> float:

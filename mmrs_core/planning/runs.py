@@ -113,7 +113,7 @@ class PortionRun:
         """Return when the robot is back if it ends with a portion; inf if it cannot do that."""
         if not self.can_do(portion):
             return inf
-        return self.ended(portion) + self._pilot.exit_seconds(self.material.last(portion))
+        return self.ended(portion) + self._pilot.end_seconds(self.material.last(portion))
 
     def until(self, time: float) -> int:
         """Return the last portion after which the robot is back by a time; the one before `begin` if none."""

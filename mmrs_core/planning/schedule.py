@@ -18,6 +18,9 @@ from mmrs_core.scene import Task
 
 _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
 
+_MOST_ALONE = 8
+"""Robots that are tried for work that one is to do: one that begins later may need fewer sorties."""
+
 
 @dataclass(frozen=True, slots=True)
 class Decisions:
@@ -114,7 +117,7 @@ class _Scheduling:
                 return Shortfall(job.name, len(waiting) + 1)
         pilots = self._team.pilots
         backs = {
-            name: state.time + (pilots[name].exit_seconds(state.at) if state.away else 0.0)
+            name: state.time + (pilots[name].end_seconds(state.at) if state.away else 0.0)
             for name, state in self._states.items()
             if name in self._busy
         }
@@ -213,7 +216,7 @@ class _Scheduling:
         if end is None:
             return None
         begin = end.trail[1].begin if end.trail is not None else end.time
-        back = end.time + pilot.exit_seconds(end.at)
+        back = end.time + pilot.end_seconds(end.at)
         soonest = {name: end.time - end.lead}
         return JobResult({**states, name: end}, begin, {name: end.time}, soonest, back)
 
@@ -267,7 +270,9 @@ class _Scheduling:
                 yield candidates, task.wanted is not None
             return
         if task.wanted is not None:
-            if task.wanted <= len(candidates):
+            if task.wanted == 1:
+                yield from (([each], True) for each in candidates[:_MOST_ALONE])
+            elif task.wanted <= len(candidates):
                 yield candidates[: task.wanted], True
             return
         if candidates and candidates[0].forwards.whole:

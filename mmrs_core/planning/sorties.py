@@ -45,6 +45,7 @@ class Pilot:
         self.limit = min(self.kinematics.endurance, by_energy) / longer
         self.paces: dict[tuple[bool, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
         self._exits: dict[Position, float] = {}
+        self._descents: dict[Position, float] = {}
         self._homes: dict[Position, float] = {}
 
     def start(self, delay: float = 0.0) -> State:
@@ -58,6 +59,12 @@ class Pilot:
     def exit_seconds(self, position: Position) -> float:
         """Return the seconds that ending the last sortie from a place takes; inf where it cannot end."""
         return _remembered(self._exits, position, self.exit_route)
+
+    def end_seconds(self, position: Position) -> float:
+        """Return the seconds from a place to the robot's end: down where it is, if it need not return."""
+        if not self.homebound or self.robot.return_home:
+            return self.exit_seconds(position)
+        return min(self.exit_seconds(position), _remembered(self._descents, position, self.travel.come_down))
 
     def home_seconds(self, position: Position) -> float:
         """Return the seconds that the route home from a place takes; inf where there is none."""
