@@ -71,16 +71,24 @@ def shipped() -> list[str]:
 
 
 @cache
-def nodes(path: str) -> list[ast.AST]:
-    """Return all nodes of a module."""
-    return list(ast.walk(ast.parse((ROOT / path).read_text("utf-8"))))
+def texts_and_names(path: str) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
+    """Return the line and text of each string that holds a space, and of each name that a module defines."""
+    texts, defined = [], [(1, Path(path).stem)]
+    for node in ast.walk(ast.parse((ROOT / path).read_text("utf-8"))):
+        if isinstance(node, ast.Constant):
+            if isinstance(node.value, str) and " " in node.value.strip():
+                texts.append((node.lineno, node.value))
+        elif isinstance(node, DEFINITIONS):
+            defined.append((node.lineno, node.name))
+        elif isinstance(node, ast.arg):
+            defined.append((node.lineno, node.arg))
+    return texts, defined
 
 
 def sentences(path: str) -> Iterator[tuple[int, str]]:
     """Yield the line and text of each docstring, and of each other string that holds a space, of a module."""
-    for node in nodes(path):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
-            yield node.lineno, re.sub(r"`[^`\n]+`", "", re.sub(r"^ +", "", node.value, flags=re.MULTILINE))
+    for line, text in texts_and_names(path)[0]:
+        yield line, re.sub(r"`[^`\n]+`", "", re.sub(r"^ +", "", text, flags=re.MULTILINE))
 
 
 def paragraphs(path: str) -> Iterator[tuple[int, str]]:
@@ -115,9 +123,7 @@ def prose() -> Iterator[str]:
 def names() -> Iterator[str]:
     """Yield the place of each metaphor in the name of a module, a class, a function or a parameter."""
     for name in shipped():
-        defined = [(x.lineno, x.name) for x in nodes(name) if isinstance(x, DEFINITIONS)]
-        parameters = [(x.lineno, x.arg) for x in nodes(name) if isinstance(x, ast.arg)]
-        for line, word in [(1, Path(name).stem), *defined, *parameters]:
+        for line, word in texts_and_names(name)[1]:
             if METAPHORS.search(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", word).lower()):
                 yield f"{name}:{line}: {word}"
 

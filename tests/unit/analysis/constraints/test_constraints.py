@@ -26,10 +26,15 @@ def test_every_constraint_has_a_failing_and_a_passing_model():
 
 
 @pytest.mark.parametrize("code", sorted(CASES))
-def test_constraint_is_broken_by_its_failing_model(models, code):
+def test_constraint_is_broken_by_its_failing_model_and_says_what_where_and_how_to_mend_it(models, code):
     breach, _, *others = CASES[code]
     breach(models)
     assert models.codes() - set(others) == {code}
+    for fault in models.faults([each for each in CONSTRAINTS if each.code == code]):
+        assert fault.hint
+        assert fault.place.path
+        assert not fault.message.endswith(".")
+        assert "\n" not in fault.message
 
 
 @pytest.mark.parametrize("constraint", CONSTRAINTS, ids=lambda each: each.code)
@@ -37,16 +42,6 @@ def test_constraint_is_kept_by_its_passing_model(models, constraint):
     _, near, *_others = CASES[constraint.code]
     near(models)
     assert not models.faults([constraint])
-
-
-@pytest.mark.parametrize("constraint", CONSTRAINTS, ids=lambda each: each.code)
-def test_breach_says_what_where_and_how_to_mend_it(models, constraint):
-    CASES[constraint.code][0](models)
-    for fault in models.faults([constraint]):
-        assert fault.hint
-        assert fault.place.path
-        assert not fault.message.endswith(".")
-        assert "\n" not in fault.message
 
 
 def test_codes_differ():
