@@ -128,7 +128,7 @@ def test_everything_that_is_expressed_is_told_how(name):
 
 @pytest.mark.parametrize("name", sorted(BY_NAME))
 def test_rendering_does_what_the_table_says(name):
-    check_table(name, every=6)
+    check_table(name, every=12)
 
 
 @pytest.mark.parametrize("name", sorted(BY_NAME))

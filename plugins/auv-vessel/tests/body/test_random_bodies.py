@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite
 
 import pytest
+from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sample_vessels import thruster
@@ -51,39 +52,30 @@ STATES = st.builds(
 )
 
 
-COUNTS = pytest.mark.parametrize("count", [30, pytest.param(600, marks=pytest.mark.thorough)])
+ROUNDS = settings(max_examples=many(600, fast=20), deadline=None)
 
 
-@COUNTS
-def test_energy_never_grows_without_thrust(count):
-    @settings(max_examples=count, deadline=None)
-    @given(sheets(), STATES)
-    def law(sheet, state):
-        body = body_of(sheet, (0.0, 0.0), 12.0)
-        still = [0.0] * len(body.jets)
-        last = energy(body, state)
-        scale = body.weight + abs(last)
-        for _ in range(300):
-            state = step(body, state, (still, still, still), 0.01)
-            now = energy(body, state)
-            assert now <= last + 1e-5 * scale
-            last = now
-
-    law()
+@ROUNDS
+@given(sheets(), STATES)
+def test_energy_never_grows_without_thrust(sheet, state):
+    body = body_of(sheet, (0.0, 0.0), 12.0)
+    still = [0.0] * len(body.jets)
+    last = energy(body, state)
+    scale = body.weight + abs(last)
+    for _ in range(300):
+        state = step(body, state, (still, still, still), 0.01)
+        now = energy(body, state)
+        assert now <= last + 1e-5 * scale
+        last = now
 
 
-@COUNTS
-def test_all_numbers_stay_finite_under_thrust_in_a_current_on_the_bottom(count):
-    @settings(max_examples=count, deadline=None)
-    @given(sheets(), STATES, st.tuples(SPEEDS, SPEEDS), st.floats(-35.0, 35.0))
-    def law(sheet, state, current, force):
-        body = body_of(sheet, current, 12.0)
-        thrusts = [force] * len(body.jets)
-        for _ in range(300):
-            state = step(body, state, (thrusts, thrusts, thrusts), 0.01)
-
-        assert all(isfinite(number) for number in state)
-        assert max(abs(speed) for speed in state[7:]) < 50.0
-        assert sum(part * part for part in state[3:7]) == pytest.approx(1.0)
-
-    law()
+@ROUNDS
+@given(sheets(), STATES, st.tuples(SPEEDS, SPEEDS), st.floats(-35.0, 35.0))
+def test_all_numbers_stay_finite_under_thrust_in_a_current_on_the_bottom(sheet, state, current, force):
+    body = body_of(sheet, current, 12.0)
+    thrusts = [force] * len(body.jets)
+    for _ in range(300):
+        state = step(body, state, (thrusts, thrusts, thrusts), 0.01)
+    assert all(isfinite(number) for number in state)
+    assert max(abs(speed) for speed in state[7:]) < 50.0
+    assert sum(part * part for part in state[3:7]) == pytest.approx(1.0)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 import pytest
+from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from virtual_link import Air, VirtualLink
@@ -93,15 +94,8 @@ anyhow = given(
 
 
 @anyhow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=many(1500, fast=25))
 def test_a_plan_is_kept_whole_or_refused_truthfully(firmware, kinds, size, before, air, seed):
-    upload_all(firmware, kinds, size, before, air, seed)
-
-
-@anyhow
-@settings(max_examples=1500, deadline=None)
-@pytest.mark.thorough
-def test_a_plan_is_kept_whole_or_refused_truthfully_thoroughly(firmware, kinds, size, before, air, seed):
     upload_all(firmware, kinds, size, before, air, seed)
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import dist
 
 import pytest
+from counts import many
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off
@@ -49,7 +50,7 @@ def flown(profile, to: Vector, speed: float) -> float:
 @example((0.0, 0.5, 20.0), 5.0)
 @example((0.0, 12.0, 20.0), 8.5)
 @example((0.0, 0.0, 40.0), 5.0)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=many(600, fast=30))
 def test_a_leg_of_a_simulated_vehicle_keeps_to_its_bounds(profile, to, speed):
     figures = profile.pacing.step
     rates = Rates(speed, figures.climb, figures.descent, figures)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import pytest
+from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
@@ -64,13 +64,6 @@ def items_of_list(flight):
 
 
 @given(flights())
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=many(600, fast=20))
 def test_a_list_holds_the_items_of_the_plan(flight):
-    assert items_of_list(flight) == items_of_plan(flight)
-
-
-@given(flights())
-@settings(max_examples=600, deadline=None)
-@pytest.mark.thorough
-def test_a_list_holds_the_items_of_the_plan_thoroughly(flight):
     assert items_of_list(flight) == items_of_plan(flight)
