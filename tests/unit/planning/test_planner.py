@@ -402,3 +402,20 @@ def test_a_shared_task_that_takes_too_many_charges_names_who_cannot_share_it():
     works = {"a": {"r1": line, "r2": line, "r3": road((0.0, 60.0, 20.0), (50.0, 60.0, 20.0))}}
     with pytest.raises(InfeasibleError, match="r1 and r2 cannot share it with r3"):
         plan(scene(three, works, tasks={"a": task("a", wanted=2)}))
+
+
+def test_one_robot_that_is_wanted_is_the_one_that_needs_fewer_sorties():
+    corners = [(500.0 if 0 < i % 4 < 3 else 100.0, 50.0 + 20.0 * (i // 2), 20.0) for i in range(12)]
+    line = road(*corners, cuts=tuple(range(50, 2450, 50)))
+    near = with_kinematics(robot("near", (100.0, 0.0, 0.0)), endurance=150.0)
+    far = robot("far")
+    found = sound(scene((near, far), {"a": line}, tasks={"a": task("a", wanted=1)}))
+    assert found.robots[0].idle
+    assert found.makespan < plan(scene((near,), {"a": line})).makespan
+
+
+def test_a_robot_that_may_end_where_it_works_is_chosen_for_that():
+    stays = replace(robot("stays", (-100.0, 0.0, 0.0)), return_home=False)
+    found = sound(scene((robot("returns"), stays), {"a": visit((600.0, 0.0, 20.0))}))
+    assert found.robots[0].idle
+    assert found.robots[1].steps[-1].at[:2] == (600.0, 0.0)
