@@ -39,6 +39,7 @@ def _extended(stroke: Stroke, metres: float, core: BaseGeometry) -> Stroke:
         points=(*first, *points, *last),
         actions=tuple(replace(action, at=action.at + lead) for action in stroke.actions),
         cuts=tuple(cut + lead for cut in stroke.cuts),
+        settles=True,
         stretch=(begin - lead * step, end + tail * step),
         repetition=None if each is None else replace(each, before=lead, after=tail),
     )

@@ -81,6 +81,7 @@ class Stroke:
         object: description of an object to go up to after the last point; None: none.
         object_distance: metres from it at the end; object_tolerance: how far it may be from the
             last point, metres, None where unknown.
+        settles: whether the robot stops at the first point, to turn and settle before it begins.
         part: which part of the task it does, such as "row 3"; empty: the one with these points. Robots of
             different sorts share a task by it.
         stretch: from where to where it does that part, in a measure that is the same for all robots.
@@ -100,6 +101,7 @@ class Stroke:
     part: str = ""
     stretch: tuple[float, float] = (0.0, 1.0)
     repetition: Repetition | None = None
+    settles: bool = False
 
     @property
     def length(self) -> float:

@@ -165,6 +165,8 @@ def moves_of(stroke: Stroke, kind: RobotKind, speed: float | None) -> tuple[Move
         (spec,) = kind.travel((here, place))
         specs.append(replace(spec, look=stroke.look, speed=speed, before=pending, after=actions))
         here, pending = place, ()
+    if stroke.settles and specs:
+        specs[0] = replace(specs[0], settles=True)
     return (*specs, *_at_the_end(stroke, here, pending, specs))
 
 

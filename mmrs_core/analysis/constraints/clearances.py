@@ -47,7 +47,8 @@ def _from(distance: float, words: str, area: DrawnArea) -> str:
 
 def _point(task: Element, models: ModelSet) -> Iterator[Finding]:
     point = child(task, "point")
-    if point is not None and not number(task, "distance"):  # else the robot stays away from the point
+    away = number(task, "distance") or number(task, "radius")  # the robot does not come to the point
+    if point is not None and not away:
         yield from _found(task, unreachable(task, point, "its point", models))
 
 

@@ -21,6 +21,7 @@ MISSIONS = (
     "pool-course",
     "two-auv-survey",
     "lost-float",
+    "barn",
 )
 ASSUMED = {"Lost float": {"found:lost float": True}}
 """What choices ask that nobody else can answer, by mission."""

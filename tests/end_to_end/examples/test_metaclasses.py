@@ -19,6 +19,7 @@ MISSIONS = (
     "pool-course",
     "two-auv-survey",
     "lost-float",
+    "barn",
 )
 LANGUAGES = (
     "urn:mmrs:mission:1.0",

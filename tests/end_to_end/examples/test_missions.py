@@ -29,6 +29,7 @@ LONGEST = {
     "Lost float": 204.0,
     "Objects in the pool": 395.0,
     "Outfall": 1322.0,
+    "Photos of a farm": 1068.0,
     "Recycling yard after a fire": 473.0,
     "Thermal inspection": 555.0,
     "Two fields": 192.0,
@@ -174,6 +175,7 @@ def test_samples_cover_every_field_of_the_carbon_dioxide_mission(taken):
         ("pool-course", {"auv"}),
         ("two-auv-survey", {"auv"}),
         ("lost-float", {"multicopter", "auv"}),
+        ("barn", {"multicopter"}),
     ],
 )
 def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kinds):

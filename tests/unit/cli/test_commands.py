@@ -211,7 +211,7 @@ def test_a_metamodel_is_for_a_model_not_for_a_project(tmp_path, capsys):
         (["diff", ".", str(PARK / "mission.xmi")], "mission.xmi is a file; name two files or two folders"),
         (["control", "hold"], "logs: no running robots use this log folder; name the folder of the run with"),
         (["explain", "x.py:3"], "x.py: no such file"),
-        (["demo", "nope"], "nope: unknown example; there are carbon-dioxide"),
+        (["demo", "nope"], "nope: unknown example; there are barn, carbon-dioxide"),
     ],
 )
 def test_what_is_not_there_is_named_with_what_helps(line, words, capsys, monkeypatch, tmp_path):
