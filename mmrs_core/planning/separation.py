@@ -42,8 +42,8 @@ _SPARE = 0.05
 """Seconds that robots are apart in time at one place, since times follow from rounded coordinates."""
 
 
-_ROUNDS = 60
-"""Later starts that are tried."""
+_ROUNDS = 8
+"""Schedules that are made with later starts."""
 
 
 class TooNearError(InfeasibleError):
@@ -136,30 +136,22 @@ def starting_later(
         decisions: to begin with.
         planned: makes the plan of decisions; None where they lead to none.
     """
-    found, least, hasty = planned(decisions), distance_to_keep(team.scene) or 0.0, False
-    traffic = None if found is None else Traffic(team.scene, found, least)
+    least, hasty = distance_to_keep(team.scene) or 0.0, False
     for _ in range(_ROUNDS):
-        if traffic is not None and not traffic.conflicts and _recharges(traffic.plan):
-            hasty = True
-            traffic = Traffic(team.scene, traffic.plan, least, hasty=True)
-        if traffic is None or not traffic.conflicts:
+        found = planned(decisions)
+        if found is None:
             break
-        first, better = traffic.earliest(), None
-        shifts = [
-            (traffic.shift(one, two), two)
-            for one, two in ((first.first, first.second), (first.second, first.first))
-        ]
-        for shift, name in sorted(shifts):
-            later = replace(
-                decisions, delays={**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
-            )
-            plan = planned(later) if shift < inf else None
-            other = None if plan is None else Traffic(team.scene, plan, least, hasty=hasty)
-            if other is not None and other.is_ahead_of(first):
-                decisions, better = later, other
-                break
-        traffic = better
-    return None if traffic is None or traffic.conflicts else traffic.plan
+        traffic = Traffic(team.scene, found, least, hasty=hasty)
+        if not traffic.conflicts and not hasty and _recharges(found):
+            hasty = True
+            traffic = Traffic(team.scene, found, least, hasty=True)
+        if not traffic.conflicts:
+            return found
+        later = traffic.later_starts()
+        if not later:
+            break
+        decisions = replace(decisions, delays={**decisions.delays, **later})
+    return None
 
 
 def _waiting(team: Team, traffic: Traffic, conflict: Conflict) -> Iterator[Traffic]:
@@ -250,12 +242,16 @@ class Traffic:
         self, proximity: Proximity, i: Indices, j: Indices
     ) -> Iterator[tuple[tuple[str, str], Conflict]]:
         """Yield the earliest conflict of each two robots."""
-        times = np.maximum(proximity.soonest(i, j), 0.0)
-        distances, at_home = proximity.nearest(i, j, _SPARE), proximity.at_home(i, j)
-        for k in np.argsort(-times, kind="stable").tolist():
-            one, two = (self._names[proximity.pieces.owners[each[k]]] for each in (i, j))
-            found = Conflict(one, two, float(times[k]), float(distances[k]), bool(at_home[k]))
-            yield (one, two), found
+        times, owners = np.maximum(proximity.soonest(i, j), 0.0), proximity.pieces.owners
+        pairs = owners[i] * len(self._names) + owners[j]
+        order = np.argsort(times, kind="stable")
+        first = order[np.unique(pairs[order], return_index=True)[1]]
+        i, j = i[first], j[first]
+        figures = (times[first], proximity.nearest(i, j, _SPARE), proximity.at_home(i, j))
+        for one, two, *rest in zip(*(owners[each].tolist() for each in (i, j)), *figures, strict=True):
+            time, distance, at_home = rest
+            names = self._names[one], self._names[two]
+            yield names, Conflict(*names, float(time), float(distance), bool(at_home))
 
     def earliest(self) -> Conflict:
         """Return the earliest conflict."""
@@ -299,22 +295,29 @@ class Traffic:
             most = max(most, used)
         return most
 
-    def is_ahead_of(self, conflict: Conflict) -> bool:
-        """Return whether a conflict is gone, or comes later."""
-        if not self.conflicts:
-            return True
-        first = self.earliest()
-        alike = (first.first, first.second) == (conflict.first, conflict.second)
-        return not alike or first.time > conflict.time + 0.5
+    def later_starts(self) -> dict[str, float]:
+        """Return when robots must leave home at the earliest to keep apart; empty if that does not help.
 
-    def shift(self, fixed: str, late: str) -> float:
-        """Return by how many whole seconds a robot must start later for one other; inf: never."""
-        proximity = self._proximity([self._pieces[fixed], self._pieces[late]])
-        count = len(self._pieces[fixed])
+        One after the other, that one is settled which starts the least later for those settled before.
+        """
+        left = {each.robot: each.steps for each in self.plan.robots}
+        shifts = {name: 0.0 for name, steps in left.items() if not steps}
+        while waiting := [name for name in left if name not in shifts]:
+            shift, name = min((self._shift(name, shifts), name) for name in waiting)
+            if shift == inf:
+                return {}
+            shifts[name] = shift
+        return {name: _leaves(left[name]) + shift for name, shift in shifts.items() if shift}
+
+    def _shift(self, late: str, fixed: Mapping[str, float]) -> float:
+        """Return by how many seconds a robot must start later for others, late too; inf: never."""
+        parts = [self._pieces[name].later(shift) for name, shift in fixed.items()]
+        proximity = self._proximity([*parts, self._pieces[late]])
+        count = sum(map(len, parts))
         i, j = proximity.paths(np.arange(count), np.arange(count, len(proximity.pieces)))
-        begins, ends = proximity.delays(i, j, _SPARE)
-        shift = 1.0
-        for begin, end in _united(begins, ends, np.ones(len(i), np.bool_)):
+        begins, ends = proximity.delays(*self._unordered(proximity.pieces, i, j), _SPARE)
+        shift = 0.0
+        for begin, end in _united(begins, ends, np.ones(len(begins), np.bool_)):
             if begin < shift < end:
                 shift = float(np.ceil(end))
         return shift
@@ -350,6 +353,11 @@ class Traffic:
                 )
             )
         return waits_before(found)
+
+
+def _leaves(steps: Sequence[Step]) -> float:
+    """Return when a robot begins anything but to wait."""
+    return next((step.begin for step in steps if not isinstance(step, Await)), 0.0)
 
 
 def _may_wait(step: Step | None) -> bool:
