@@ -48,7 +48,7 @@ class MoveSpec:
         facing: whether `look` means the object, wherever it is found, and not its expected position.
         speed: metres per second; None: by the travel mode.
         before, after: device actions before and after the movement; their `at` does not matter.
-        settles: whether the robot stops before it, though it could pass into it.
+        settles: whether the robot stops before and after it, though it could pass.
     """
 
     metaclass: Name

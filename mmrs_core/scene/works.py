@@ -81,7 +81,7 @@ class Stroke:
         object: description of an object to go up to after the last point; None: none.
         object_distance: metres from it at the end; object_tolerance: how far it may be from the
             last point, metres, None where unknown.
-        settles: whether the robot stops at the first point, to turn and settle before it begins.
+        settles: whether the robot stops at both ends, to turn and settle, though it could pass.
         part: which part of the task it does, such as "row 3"; empty: the one with these points. Robots of
             different sorts share a task by it.
         stretch: from where to where it does that part, in a measure that is the same for all robots.

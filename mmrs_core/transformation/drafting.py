@@ -166,7 +166,7 @@ def moves_of(stroke: Stroke, kind: RobotKind, speed: float | None) -> tuple[Move
         specs.append(replace(spec, look=stroke.look, speed=speed, before=pending, after=actions))
         here, pending = place, ()
     if stroke.settles and specs:
-        specs[0] = replace(specs[0], settles=True)
+        specs[0], specs[-1] = replace(specs[0], settles=True), replace(specs[-1], settles=True)
     return (*specs, *_at_the_end(stroke, here, pending, specs))
 
 

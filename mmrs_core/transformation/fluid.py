@@ -42,12 +42,10 @@ class Corners:
             return False
         nodes = self._chain.nodes
         first, second = nodes[edge.source], nodes[edge.to]
-        if (
-            first.after
-            or second.before
-            or second.spec.settles
-            or not (_travels(first.spec) and _travels(second.spec))
-        ):
+        settles = first.spec.settles or second.spec.settles
+        if first.after or second.before or settles:
+            return False
+        if not (_travels(first.spec) and _travels(second.spec)):
             return False
         start = nodes[self._before[edge.source]].spec.target
         corner, end = first.spec.target, second.spec.target
