@@ -89,6 +89,9 @@ class Space:
             UnreachableError: there is no path; the message names the areas that block it.
         """
         found = self._routes.get((start, goal))
+        back = self._routes.get((goal, start)) if start[2] == goal[2] else None
+        if found is None and isinstance(back, tuple):  # on the way back it goes up where it went down
+            found = self._routes[start, goal] = back[::-1]
         if found is None:
             found = self._routes[start, goal] = self._drivable(self._search(start, goal))
         if isinstance(found, str):
