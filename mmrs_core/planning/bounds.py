@@ -1,10 +1,7 @@
 """A makespan that no plan falls below, whatever it decides.
 
 It is the larger of two. One task after the other: a robot has to get there, do it, perhaps after those that
-it waits for, and come back. All tasks together: who visits them leaves behind a tree that spans them and the
-homes, so that a shortest spanning tree (Prim, "Shortest connection networks and some generalizations", Bell
-Syst. Tech. J. 36, 1957) and all work, shared by all robots alike, take no longer; that bounds tours since
-Held and Karp, "The traveling-salesman problem and minimum spanning trees", Oper. Res. 18 (1970).
+it waits for, and come back. All tasks together: tours that come to all places, and all work, see `forests`.
 
 Legs count as straight and level, from a stop to a stop, at the highest speed that a robot is ever commanded:
 no detour, corner or stop between is quicker. Strokes count as the hulls of their points, within which a robot
@@ -22,6 +19,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mmrs_core.planning.forests import least_longest, shared, spanning_tree
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import commanded_speed, joined, serve_seconds
@@ -31,7 +29,7 @@ from mmrs_core.scene import Work, distinct_works
 _CREWS = 8
 """Sets of robots that are looked at one by one, with the tasks that no others can do."""
 
-_MOST = 1000
+_MOST = 2000
 """Places up to which distances between them are exact; beyond, those of the rectangles around them."""
 
 Array = NDArray[np.float64]
@@ -45,28 +43,66 @@ def least_makespan(team: Team, jobs: Sequence[Job]) -> float:
     than a long one.
     """
     tasks = [job.name for job in jobs if job.choice is None and job.tasks()]
-    names = [name for name in team.pilots if any(name in team.able(task) for task in tasks)]
+    crews = {task: team.able(task) for task in tasks}
+    known = {name for crew in set(crews.values()) for name in crew}
+    names = {name: i for i, name in enumerate(each for each in team.pilots if each in known)}
     pilots = [team.pilots[name] for name in names]
     if not pilots or any(pilot.kinematics.timing.settling < 0.0 for pilot in pilots):
         return 0.0
-    places = {task: _places(team, task) for task in tasks}
-    homes = shapely.multipoints([pilot.robot.home[:2] for pilot in pilots])
-    away = {task: shapely.distance(each, homes) for task, each in places.items()}
-    seconds = _quickest(team, names, max(each.max() for each in away.values()) * 2.0)
+    hulls = [_places(team, task) for task in tasks]
+    places, owners = np.concatenate(hulls), np.repeat(np.arange(len(tasks)), list(map(len, hulls)))
+    away = _distances(places, shapely.points([pilot.robot.home[:2] for pilot in pilots]))
+    seconds = _quickest(team, list(names), float(away.max()) * 2.0)
     work = {task: _work(team, task) for task in tasks}
     aloft, down = _aloft_and_down(team, pilots, tasks)
-    returns = all(pilot.robot.return_home for pilot in pilots)
-    there = {task: float(seconds(each).min()) for task, each in away.items()}
+    back = all(pilot.robot.return_home for pilot in pilots)
+    nearest = seconds(np.minimum.reduceat(away.min(axis=1), np.searchsorted(owners, np.arange(len(tasks)))))
+    there = dict(zip(tasks, nearest.tolist(), strict=True))
     ends = _earliest_ends(team, jobs, {task: aloft + seconds for task, seconds in there.items()}, work)
-    least = [ends[task] + (there[task] if returns else 0.0) + down for task in tasks]
-    crews = Counter(map(team.able, tasks)).most_common(_CREWS)
-    for crew in {frozenset(each) for each, _ in crews} | {frozenset(names)}:
-        mine = [task for task in tasks if crew.issuperset(team.able(task))]
-        tree = _spanned(*(np.concatenate([each[task] for task in mine]) for each in (places, away)))
-        together = float(seconds(tree).sum()) + sum(work[task] for task in mine)
-        home = min(there[task] for task in mine) if returns else 0.0
-        least.append(aloft + down + together / len(crew) + home)
+    least = [ends[task] + (there[task] if back else 0.0) + down for task in tasks]
+    common = Counter(crews.values()).most_common(_CREWS)
+    for crew in {frozenset(each) for each, _ in common} | {frozenset(names)}:
+        mine = np.array([crew.issuperset(crews[task]) for task in tasks])
+        robots, some = sorted(names[name] for name in crew), mine[owners]
+        whole = sum(work[task] for task, own in zip(tasks, mine.tolist(), strict=True) if own)
+        together = _together(places[some], away[some][:, robots].T, seconds, back, whole)
+        least.append(aloft + down + together)
     return max(least)
+
+
+def _together(
+    places: Places, away: Array, seconds: Callable[[Array], Array], back: bool, work: float
+) -> float:
+    """Return seconds that the longest of tours to all places does not fall below.
+
+    Multipliers are for points only: where robots are anywhere at once, they may come twice for nothing.
+    """
+    boxes = shapely.bounds(places)
+    points = bool((boxes[:, :2] == boxes[:, 2:]).all())
+    if points and len(places) <= _MOST:
+        return least_longest(seconds(_distances(places, places)), seconds(away), back, work)
+
+    def lengths_from(i: int) -> Array:
+        if not points and len(places) <= _MOST:
+            exact: Array = shapely.distance(places, places[i])
+            return exact
+        gap = np.maximum(boxes[:, :2] - boxes[i, 2:], boxes[i, :2] - boxes[:, 2:])
+        least: Array = np.hypot(*np.maximum(gap, 0.0).T)
+        return least
+
+    edges, _ = spanning_tree(lengths_from, len(places))
+    return float(shared(seconds(edges), (1.0 + back) * seconds(away.min(axis=1)), work).min())
+
+
+def _distances(places: Places, others: Places) -> Array:
+    """Return (places, others) metres between them."""
+    boxes, ends = shapely.bounds(places), shapely.bounds(others)
+    if (boxes[:, :2] == boxes[:, 2:]).all() and (ends[:, :2] == ends[:, 2:]).all():
+        east, north = boxes[:, :2].T[:, :, None] - ends[:, :2].T[:, None]
+        found: Array = np.sqrt(east * east + north * north)
+        return found
+    exact: Array = shapely.distance(places[:, None], others)
+    return exact
 
 
 def _aloft_and_down(team: Team, pilots: Sequence[Pilot], tasks: Sequence[str]) -> tuple[float, float]:
@@ -133,24 +169,6 @@ def _places(team: Team, task: str) -> Places:
     ]
     hulls = [shapely.multipoints([point[:2] for point in points]).convex_hull for points in groups]
     return np.array(hulls, dtype=object)
-
-
-def _spanned(places: Places, away: Array) -> Array:
-    """Return the lengths of a shortest tree that spans places and what they are so far away from."""
-    boxes = shapely.bounds(places)
-    exact = len(places) <= _MOST and bool((boxes[:, :2] < boxes[:, 2:]).any())
-    near, lengths = away.copy(), np.zeros(len(places))
-    for i in range(len(places)):
-        nearest = int(near.argmin())
-        lengths[i] = near[nearest]
-        if exact:
-            closer = shapely.distance(places, places[nearest])
-        else:
-            gap = np.maximum(boxes[:, :2] - boxes[nearest, 2:], boxes[nearest, :2] - boxes[:, 2:])
-            closer = np.linalg.norm(np.maximum(gap, 0.0), axis=1)
-        near = np.where(near < inf, np.minimum(near, closer), inf)
-        near[nearest] = inf
-    return lengths
 
 
 def _quickest(team: Team, names: Sequence[str], longest: float) -> Callable[[Array], Array]:
