@@ -78,7 +78,7 @@ def _together(
     Multipliers are for points only: where robots are anywhere at once, they may come twice for nothing.
     """
     boxes = shapely.bounds(places)
-    points = bool((boxes[:, :2] == boxes[:, 2:]).all())
+    (west, south, east, north), points = boxes.T.copy(), bool((boxes[:, :2] == boxes[:, 2:]).all())
     if points and len(places) <= _MOST:
         return least_longest(seconds(_distances(places, places)), seconds(away), back, work)
 
@@ -86,12 +86,20 @@ def _together(
         if not points and len(places) <= _MOST:
             exact: Array = shapely.distance(places, places[i])
             return exact
-        gap = np.maximum(boxes[:, :2] - boxes[i, 2:], boxes[i, :2] - boxes[:, 2:])
-        least: Array = np.hypot(*np.maximum(gap, 0.0).T)
+        level = (west - west[i], south - south[i]) if points else _gaps(west, south, east, north, i)
+        least: Array = np.sqrt(level[0] ** 2 + level[1] ** 2)
         return least
 
     edges, _ = spanning_tree(lengths_from, len(places))
     return float(shared(seconds(edges), (1.0 + back) * seconds(away.min(axis=1)), work).min())
+
+
+def _gaps(west: Array, south: Array, east: Array, north: Array, i: int) -> tuple[Array, Array]:
+    """Return metres between the sides of one rectangle and those of all."""
+    return (
+        np.maximum(np.maximum(west - east[i], west[i] - east), 0.0),
+        np.maximum(np.maximum(south - north[i], south[i] - north), 0.0),
+    )
 
 
 def _distances(places: Places, others: Places) -> Array:
