@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 from hashlib import sha256
+from io import BytesIO
 from time import process_time
 
 import shared
@@ -28,7 +29,7 @@ def remember_plans() -> None:
 def _remembered(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     if effort is not None and effort.timed:
         return plan(scene, seed=seed, effort=effort)
-    file = _FOLDER / sha256(pickle.dumps((scene, seed))).hexdigest()
+    file = _FOLDER / sha256(_bytes_of((scene, seed))).hexdigest()
     if file.exists():
         return pickle.loads(file.read_bytes())  # type: ignore[no-any-return]
     begin = process_time()
@@ -38,3 +39,12 @@ def _remembered(scene: Scene, *, seed: int = 0, effort: Effort | None = None) ->
         beside.write_bytes(pickle.dumps(found))
         beside.rename(file)
     return found
+
+
+def _bytes_of(value: object) -> bytes:
+    """Return bytes that are the same for equal values, whichever of their parts are one object."""
+    made = BytesIO()
+    pickler = pickle.Pickler(made)
+    pickler.fast = True
+    pickler.dump(value)
+    return made.getvalue()
