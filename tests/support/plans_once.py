@@ -7,10 +7,12 @@ import pickle
 from hashlib import sha256
 from io import BytesIO
 from time import process_time
+from typing import Any
 
 import shared
 
 from mmrs_core import pipeline
+from mmrs_core.diagnostics import Place
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Plan, Scene
@@ -41,10 +43,16 @@ def _remembered(scene: Scene, *, seed: int = 0, effort: Effort | None = None) ->
     return found
 
 
+class _ByValue(pickle.Pickler):
+    """Makes the same bytes of equal scenes, whichever parts are one object, and wherever files are."""
+
+    def reducer_override(self, value: object) -> Any:
+        return (Place, ("", value.line, value.path)) if isinstance(value, Place) else NotImplemented
+
+
 def _bytes_of(value: object) -> bytes:
-    """Return bytes that are the same for equal values, whichever of their parts are one object."""
     made = BytesIO()
-    pickler = pickle.Pickler(made)
+    pickler = _ByValue(made)
     pickler.fast = True
     pickler.dump(value)
     return made.getvalue()
