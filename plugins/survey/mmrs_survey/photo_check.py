@@ -53,8 +53,10 @@ class _Photo:
 
 def _run(given: CheckInput) -> Iterator[Verdict]:
     for name, task in given.tasks.items():
+        if not task.is_a(PHOTO_GRID_TASK):
+            continue
         serving = [robot for robot in given.program.robots if any(move.task == name for move in robot.moves)]
-        if not task.is_a(PHOTO_GRID_TASK) or not serving:
+        if not serving:
             continue
         try:
             photos = [photo for robot in serving for photo in _photos(given, robot, name, task)]

@@ -28,7 +28,7 @@ LONGEST = {
     "Dam inspection": 3752.0,
     "Lost float": 204.0,
     "Objects in the pool": 395.0,
-    "Outfall": 1322.0,
+    "Outfall": 1209.0,
     "Photos of a farm": 1068.0,
     "Recycling yard after a fire": 473.0,
     "Thermal inspection": 555.0,
