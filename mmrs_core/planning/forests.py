@@ -1,11 +1,11 @@
 """A bound on the longest of several tours, by shortest forests with multipliers.
 
 Let `a` robots have a tour each that begins at its home. Without the legs from and to homes, tours are paths:
-a forest of `a` trees that spans all places. It is no shorter than a shortest spanning tree (Prim, "Shortest
-connection networks and some generalizations", Bell Syst. Tech. J. 36, 1957) less its `a` - 1 longest edges.
-The legs from and to homes are no shorter than those of the `a` robots that are nearest to any place. So the
-longest tour is no shorter than the sum of these and of all work, divided by `a`, for whichever `a` that is
-least.
+a forest of `a` trees that spans all places. Its length is at least that of a shortest spanning tree (Prim,
+"Shortest connection networks and some generalizations", Bell Syst. Tech. J. 36, 1957) less its `a` - 1
+longest edges. The legs from and to homes are at least as long as those of the `a` robots that are nearest to
+any place. So the longest tour takes at least the sum of these and of all work, divided by `a`, for whichever
+`a` that is least.
 
 In tours, each place has two legs; in a forest it may have one or many. A multiplier is added to all legs at a
 place and twice subtracted from the sum: that changes no tour, only which forest is shortest. Any multipliers
