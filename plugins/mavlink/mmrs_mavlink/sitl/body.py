@@ -170,13 +170,14 @@ class Body:
         return turns and self._legs[-1].elapsed >= self._legs[-2].left
 
     def change_speed(self, speed: float) -> None:
-        """Move at another speed, on a leg that it has begun, too, unless it slows down."""
+        """Move at another speed, on the last leg that it has begun, too, unless that slows down."""
         self.speed = speed
-        if len(self._legs) == 1 and self._goal is not None and not self._legs[0].slows:
-            distance, _ = self._legs[0].at(self._legs[0].elapsed)
-            leg = self._leg(self._start, self._goal)
+        if self._legs and self._goal is not None and not self._legs[-1].slows:
+            begun = self._legs[-1]
+            distance, _ = begun.at(begun.elapsed)
+            leg = self._leg(plus(self._goal, begun.path, -1.0), self._goal)
             leg.elapsed = _bisected(0.0, leg.duration, lambda seconds: leg.at(seconds)[0] < distance)
-            self._legs = [leg]
+            self._legs[-1] = leg
 
     def plan_anew(self) -> None:
         """Begin the leg to its target once more, from a stop."""

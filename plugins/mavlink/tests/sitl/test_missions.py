@@ -56,6 +56,15 @@ def test_a_lower_speed_cuts_less(bench):
     assert bench.closest_to(CORNER) < 0.7
 
 
+@pytest.mark.parametrize("speed", [2.0, 6.0])
+def test_a_leg_that_begins_without_a_stop_is_flown_at_its_own_speed(bench, speed):
+    first, second, third = bench.go_to((0.0, 40.0, 20.0), (0.0, 80.0, 20.0), (0.0, 120.0, 20.0))
+    items = (plain(SPEED, 1, 4.0), first, plain(SPEED, 1, speed), second, third)
+    flown(bench, *items, bench.item(LOITER, (0.0, 120.0, 20.0)), until=5)
+    times = {item: time for time, item in bench.pilot.visited}
+    assert times[4] - times[2] == pytest.approx(40.0 / speed, rel=0.1)
+
+
 def test_speed_is_kept_between_straight_legs(bench):
     straight = [(0.0, 20.0 * n, 20.0) for n in range(1, 7)]
     flown(bench, *bench.go_to(*straight), bench.item(LOITER, straight[-1]), until=6)
