@@ -8,7 +8,7 @@ not flown, which is printed. Deviation is the distance of the vehicle's own esti
 maximum and 95 %; for rovers in the plane. Margin is the closest approach to an area beyond the required
 clearance. Seconds are the vehicle's. Flights on which less than 90 % of the speed-up was kept do not count.
 
-Exit codes: 0 every flight went as declared, 1 one did not, 2 no binary is given.
+Exit codes: 0 every flight went as declared, 1 one did not, 2 no binary is given, or one that is no program.
 """
 
 from __future__ import annotations
@@ -98,6 +98,10 @@ def main() -> int:
             file=sys.stderr,
         )
         return 2
+    for firmware in FIRMWARES:
+        if firmware.binary and not os.access(firmware.binary, os.X_OK):
+            print(f"real_flights: {firmware.variable}={firmware.binary}: no program", file=sys.stderr)
+            return 2
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # vehicles and programs end with it
     print(f"# Flights on autopilots' own simulations ({datetime.now(UTC):%Y-%m-%d %H:%M} UTC)\n")
     print(line(HEAD), line(("---",) * len(HEAD)), sep="\n", flush=True)

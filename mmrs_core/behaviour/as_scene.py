@@ -31,7 +31,7 @@ def robot_of(robot: RobotProgram, type: RobotType, position_error: float = 0.0) 
 def carries_out(program: Program, mission: Scene) -> bool:
     """Return whether a behaviour may be planned from a mission: it has its frame, and serves its tasks."""
     served = {move.task for robot in program.robots for move in robot.moves if move.task}
-    return program.frame == mission.frame and served <= {task.name for task in mission.tasks}
+    return program.frame.agrees_with(mission.frame) and served <= {task.name for task in mission.tasks}
 
 
 def scene_of(

@@ -106,24 +106,22 @@ def read_behaviour_files(
 
 
 def tasks_beside(session: Session, file: Path, loaded: Loaded) -> Mapping[str, Part]:
-    """Return the tasks of the mission in the folder of a behaviour, by name; none where there is no mission.
+    """Return the tasks of the mission in the folder of a behaviour, by name.
 
-    Raises:
-        UnreadableError: if the mission cannot be read, or has its positions in another frame.
-        InvalidModelError: if a position or what is required is missing in it.
+    None are known where there is no mission, where it is not valid, or where the behaviour is not of it.
     """
+    from mmrs_core.behaviour.as_scene import carries_out
     from mmrs_core.grounding.scenes import ground
 
     mission = model_in(file.parent, "mission")
-    if mission is None:
-        return {}
-    models, faults = read_models(mission, session.contributions)
+    models = read_models(mission, session.contributions)[0] if mission is not None else None
     if models is None:
-        raise UnreadableError(f"{mission}: cannot be read", faults)
-    scene = ground(models)
-    if scene.frame != loaded.program.frame:
-        raise UnreadableError(f"{mission}: its frame is not that of {file}: plan it again")
-    return {task.name: task.part for task in scene.tasks}
+        return {}
+    try:
+        scene = ground(models)
+    except InvalidModelError:
+        return {}
+    return {task.name: task.part for task in scene.tasks} if carries_out(loaded.program, scene) else {}
 
 
 def _read_all(files: Sequence[Path], registry: Registry, unsaved: Mapping[Path, bytes] | None) -> list[Model]:

@@ -76,6 +76,25 @@ class Frame:
         """Return whether the mission has no place on the Earth."""
         return self.latitude is None
 
+    def agrees_with(self, other: Frame) -> bool:
+        """Return whether positions mean the same in both; how they are stated may differ.
+
+        Heights are above the origin where it has no altitude, whatever the reference is.
+        """
+        return (self.crs, self.latitude, self.longitude, self.surface, self._level) == (
+            other.crs,
+            other.latitude,
+            other.longitude,
+            other.surface,
+            other._level,
+        )
+
+    @property
+    def _level(self) -> tuple[float, str, float | None] | None:
+        if self.altitude is None or self.altitude_reference == "ORIGIN":
+            return None
+        return self.altitude, self.altitude_reference, self.geoid_separation
+
 
 @dataclass(frozen=True, slots=True)
 class Task:

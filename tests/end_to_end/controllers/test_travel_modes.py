@@ -55,12 +55,14 @@ def test_an_owner_who_is_more_careful_is_left_so(told):
     assert said == []
 
 
-def test_a_vehicle_climbs_and_descends_no_faster_than_its_type(told):
-    found, said = told(Travel(climb=0.4, descent=2.0, turn_rate=20.0), "sub")
+@pytest.mark.parametrize(("kind", "obeys"), [("copter", True), ("sub", False)])
+def test_a_vehicle_climbs_descends_and_turns_no_faster_than_its_type(told, kind, obeys):
+    found, said = told(Travel(climb=0.4, descent=2.0, turn_rate=20.0), kind)
     assert (found["WPNAV_SPEED_UP"], found["WPNAV_SPEED_DN"]) == (40.0, 150.0)
+    turns = "ATC_SLEW_YAW = 2000, which was 6000: it turns at 20°/s, as its type states"
     assert said == [
         "WPNAV_SPEED_UP = 40, which was 250: it climbs at 0.4 m/s, as its type states",
-        "ATC_SLEW_YAW = 2000, which was 6000: it turns at 20°/s, as its type states",
+        *([turns] if obeys else []),
     ]
 
 

@@ -127,7 +127,6 @@ _RADII = {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES}
 _CLIMBS, _DESCENTS = {"WPNAV_SPEED_UP": _CENTIMETRES}, {"WPNAV_SPEED_DN": _CENTIMETRES}
 """Obeyed at once, in GUIDED and AUTO (``AC_WPNav::update_wpnav``); an ArduSub obeys no other."""
 
-_YAW_RATES = {"ATC_SLEW_YAW": _CENTIMETRES}
 """Obeyed in GUIDED and AUTO (``AC_AttitudeControl::get_slew_yaw_max_degs``)."""
 
 NOTHING = "no failsafe set"
@@ -277,7 +276,7 @@ ARDUCOPTER = VehicleProfile(
     radii=_RADII,
     climbs=_CLIMBS,
     descents=_DESCENTS,
-    yaw_rates=_YAW_RATES,
+    yaw_rates={"ATC_SLEW_YAW": _CENTIMETRES},
     corridor=8.0,
     down="LAND",
     rests={"LAND": modes.LAND, "SURFACE": modes.HOLD},
@@ -326,7 +325,6 @@ ARDUSUB = VehicleProfile(
     radii=_RADII,
     climbs=_CLIMBS,
     descents=_DESCENTS,
-    yaw_rates=_YAW_RATES,
     highest_item=-0.01,
     watches_jumps=False,
     down="SURFACE",
