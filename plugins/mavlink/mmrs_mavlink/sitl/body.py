@@ -107,6 +107,7 @@ class Body:
         curved: whether it takes legs as S-curves. figures: how it takes them, or else approaches its target.
         radius: metres from a corner within which it passes.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
+        rested: seconds for which it has stood at the end of its last leg.
     """
 
     figures: LegTiming
@@ -123,6 +124,7 @@ class Body:
     climb: float = inf
     descent: float = inf
     turn_rate: float = 90.0
+    rested: float = 0.0
     _acceleration: Vector = STILL
     _legs: list[CurvedLeg] = field(default_factory=list)
     _fastest: float = 0.0
@@ -188,6 +190,7 @@ class Body:
         if not self._legs or self._goal not in (target, self.onward):
             if self.distance_to(target) < CLOSE:
                 self.velocity = self._acceleration = STILL
+                self.rested += step
                 return True
             if self.pace > STANDING:
                 return False
@@ -195,6 +198,7 @@ class Body:
         self._begin_turn(target)
         for leg in self._legs:
             leg.elapsed += step
+        self.rested = 0.0
         while self._legs and self._legs[0].left <= 0.0:
             self._start = plus(self._start, self._legs.pop(0).path, 1.0)
         position, self.velocity, self._acceleration = self._start, STILL, STILL

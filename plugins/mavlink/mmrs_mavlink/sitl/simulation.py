@@ -25,6 +25,8 @@ PILOT_TIMEOUT = 3.0
 """Seconds without MANUAL_CONTROL after which ArduSub disarms (FS_PILOT_INPUT)."""
 
 CLOSE = 0.2
+HOLD = 1.0
+"""Seconds of a hold that settling on missions includes."""
 STOPPING = frozenset({19, 20, 21, 22})
 """Items before which the vehicle stops."""
 
@@ -247,7 +249,8 @@ def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     pilot.face(place)
     if body.onward is not None:
         return body.passes_target()
-    if body.distance_to(place) > CLOSE and not pilot.held:
+    settles = max(0.0, body.figures.settling - HOLD)
+    if not pilot.held and (body.distance_to(place) > CLOSE or body.rested < settles):
         return False
     pilot.held += seconds
     return item.command != mavlink.MAV_CMD_NAV_LOITER_UNLIM and pilot.held >= item.params[0]

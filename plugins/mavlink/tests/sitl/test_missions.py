@@ -82,6 +82,14 @@ def test_a_hold_lasts_its_seconds(bench):
     assert bench.pilot.time - began == pytest.approx(3.0, abs=0.2)
 
 
+def test_a_leg_that_ends_with_a_hold_takes_as_long_as_is_planned(bench):
+    """Measured on ArduCopter 4.7-dev: 11.8 s, the hold of a second included."""
+    flown(bench, plain(SPEED, 1, 6.0), *bench.go_to((0.0, 30.0, 20.0), hold=1.0), until=1)
+    assert bench.wait_for(lambda: bench.pilot.finished)
+    times = {item: time for time, item in bench.pilot.visited}
+    assert times[2] - times[1] == pytest.approx(11.8, rel=0.05)
+
+
 def test_items_that_end_at_once_are_passed_in_order(bench):
     items = (bench.item(22, (0.0, 0.0, 5.0)), plain(SPEED, 1, 4.0), bench.item(LOITER, (0.0, 30.0, 5.0)))
     flown(bench, *items, until=3, height=5.0)
