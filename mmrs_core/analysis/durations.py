@@ -91,13 +91,13 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         legs[leg.move].append(leg)
     local = input.program.frame.is_local
     passages = Passages(robot, input.move_kinds, kinematics, local=local)
-    passed, pushes = _passed(robot, passages, legs), _pushes(robot, passages, legs)
+    passed, pushes = _passed(robot, passages, legs, kinematics.cruise), _pushes(robot, passages, legs)
     gaps = {gap.move: gap for gap in motion.gaps}
     found: dict[int, Duration] = {}
     for index in moves:
         move = robot.moves[index]
         flows = replace(move, flows=index in passed)
-        known = replace(passages.kinematics(move), push=pushes.get(index))
+        known = replace(passages.kinematics(move), push=pushes.get(index), entering=passed.get(index, 0.0))
         moving = _least(move) if index in gaps else _moving(input, robot, flows, legs[index], known)
         found[index] = _with_actions(move, moving, robot_type, kinematics.timing)
         if index not in gaps and found[index].whole.high == inf:
@@ -118,14 +118,17 @@ def _why_unbounded(move: Move, robot_type: RobotType) -> str:
     return "nothing bounds how long it takes"
 
 
-def _passed(robot: RobotProgram, passages: Passages, legs: Mapping[int, list[MovePath]]) -> frozenset[int]:
-    """Return the moves that the robot begins or ends without a stop."""
-    return frozenset(
-        index
-        for source, transition in robot.transitions.items()
-        if any(passages.ahead(robot.moves[source], leg.points) for leg in legs.get(source, ()))
-        for index in (source, transition.to)
-    )
+def _passed(
+    robot: RobotProgram, passages: Passages, legs: Mapping[int, list[MovePath]], cruise: float
+) -> dict[int, float]:
+    """Return with which speed at most the robot enters the moves that it begins or ends without a stop."""
+    found: dict[int, float] = {}
+    for source, transition in robot.transitions.items():
+        move = robot.moves[source]
+        if any(passages.ahead(move, leg.points) for leg in legs.get(source, ())):
+            found.setdefault(source, 0.0)
+            found[transition.to] = max(found.get(transition.to, 0.0), move.speed or cruise)
+    return found
 
 
 def _pushes(

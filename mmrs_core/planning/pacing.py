@@ -86,6 +86,7 @@ class _Line:
         rates = pilot.kinematics.rates(commanded_speed(stroke, pilot.kinematics))
         self._rates = rates.soonest() if soonest else rates
         self._eased = soonest and pilot.travel.fluid
+        self._transit = pilot.kinematics.cruise
         self._stops = stops_of(stroke)
         todo = list(stroke.commands)
         due = list(_due(todo, 0.0))
@@ -104,7 +105,9 @@ class _Line:
         self.whole = self._departures[-1] + stroke.hold + turning
 
     def _leg(self, one: Position, two: Position) -> float:
-        return self._rates.eased(one, two) if self._eased else self._rates.from_stop_to_stop(one, two)
+        if not self._eased:
+            return self._rates.from_stop_to_stop(one, two)
+        return self._rates.eased(one, two, 0.0 if self._arcs[-2] else self._transit)
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
         return sum(action_seconds(self._robot.type, action) for action in actions)

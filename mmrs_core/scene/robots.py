@@ -171,6 +171,7 @@ class Kinematics:
         upright: timing of launch and landing; None: as that of legs.
         facing: degrees clockwise from north in which it looks before a move; None: not known.
         push: with which it begins a move; None: not known.
+        entering: metres per second of the move before, at most, where it passes the end of that.
     """
 
     cruise: float
@@ -203,6 +204,7 @@ class Kinematics:
     upright: LegTiming | None = None
     facing: float | None = None
     push: Push | None = None
+    entering: float = 0.0
 
     def fits_curve(self, turn: float, leg: float) -> bool:
         """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.

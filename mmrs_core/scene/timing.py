@@ -178,6 +178,8 @@ class Rates:
         """
         if self.bound < 0 and dist(start, end) <= self.timing.acceptance:
             return 0.0
+        if self.bound < 0:
+            end = self._early(start, end)
         seconds = self.share * self._straight(start, end, push)
         if not self.bound and 0.0 < (length := dist(start, end)) <= self.accepts:
             seconds = self._among_short_ones(start, end, int(self.accepts / length) + 1)
@@ -231,17 +233,36 @@ class Rates:
         seconds, fastest = self._stopping(start, end)
         return self.share * max(0.0, self._lag(seconds, start, end) + self.timing.settled(fastest))
 
-    def eased(self, start: Position, end: Position) -> float:
+    def eased(self, start: Position, end: Position, entering: float = 0.0) -> float:
         """Return the fewest seconds of a leg whose ends are passed.
 
         An autopilot that passes within a radius is on the neighbouring legs at the same time, for as long
-        as it speeds up and slows down; of another nothing is known but its speed.
+        as it speeds up and slows down; of another nothing is known but its speed. One that comes from a
+        faster leg slows down on this one.
+
+        Args:
+            start, end: of the leg.
+            entering: metres per second commanded on the leg before.
         """
-        even = self.even(start, end)
         if self.timing.corner_radius == inf:
-            return even
+            return self.even(start, end)
+        end = self._early(start, end)
         seconds, _ = self._stopping(start, end)
-        return max(SPEEDING * even, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
+        more = max(0.0, entering - self.cruise)
+        saved = more * _speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
+        eased = max(
+            SPEEDING * self.even(start, end), self.share * (seconds - sum(self._phases(start, end)) / 2.0)
+        )
+        return max(0.0, eased - saved)
+
+    def _early(self, start: Position, end: Position) -> Position:
+        """Return where a leg may end that counts as over while the robot moves."""
+        length = dist(start, end)
+        if self.timing.still > 0.0 or not self.timing.acceptance or length <= 0.0:
+            return end
+        part = max(0.0, 1.0 - self.timing.acceptance / length)
+        east, north, up = (p + part * (q - p) for p, q in zip(start, end, strict=True))
+        return (east, north, up)
 
     def _between_inexact_ends(self, start: Position, end: Position) -> float:
         """Return the fewest or most seconds of a leg: one counts as over before the robot stands at its end.

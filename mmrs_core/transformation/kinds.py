@@ -173,12 +173,13 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
     rates, legs = kinematics.rates(move.speed), list(pairwise(path))
     soonest = rates.soonest()
     latest, facing, push = rates.latest(), kinematics.facing, kinematics.push
+    entering = kinematics.entering
     least = expected = most = 0.0
     for leg in legs:
-        least += soonest.eased(*leg) if move.flows else soonest.from_stop_to_stop(*leg, push=push)
+        least += soonest.eased(*leg, entering) if move.flows else soonest.from_stop_to_stop(*leg, push=push)
         expected += rates.from_stop_to_stop(*leg, facing, push)
         most += latest.from_stop_to_stop(*leg, push=push)
-        facing, push = bearing(*leg), rates.push(*leg, push)
+        facing, push, entering = bearing(*leg), rates.push(*leg, push), 0.0
     return MoveSeconds(least, expected, most)
 
 

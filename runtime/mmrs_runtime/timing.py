@@ -25,7 +25,7 @@ class LegTiming:
         climb, descent: largest that it makes, metres per second.
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
         acceptance: metres from a target at which it may count as reached: so short a leg may take no time,
-            and another one may be so much longer that begins there.
+            and another one may be so much longer that begins there; so much shorter, too, without `still`.
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
         settling: seconds from the end of a leg until it is reported as done; negative: before its end.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only

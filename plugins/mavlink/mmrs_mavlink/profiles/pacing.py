@@ -91,6 +91,7 @@ ROVER = AutopilotTiming(
         acceleration=1.0,
         jerk=1.0,
         corner_radius=2.0,
+        acceptance=0.5,
         settling=2.4,
         keeps_acceleration=False,
         spread=0.2,
@@ -101,7 +102,8 @@ ROVER = AutopilotTiming(
     rounds=True,
 )
 """ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default; neither is commanded, so that of its type
-need not hold. On missions it never reverses to turn."""
+need not hold. On missions it never reverses to turn, and corners count as passed within WP_RADIUS, which is
+set."""
 
 SUB = AutopilotTiming(
     step=LegTiming(
@@ -177,6 +179,7 @@ PX4_COPTER = AutopilotTiming(
         climb=3.0,
         descent=1.5,
         corner_radius=2.0,
+        acceptance=2.0,
         settling=2.7,
         spread=0.4,
         reporting=5.0,
@@ -198,7 +201,7 @@ than 0.5 m/s. It counts as settled once it has been within 1.5 m for 6 s (``vehi
 0.3 m/s in any case, for up to 17.5 s: the speed that it estimates wanders by 0.9 m/s. A first leg begins 2 s
 late, since OFFBOARD wants set-points before.
 
-On missions it brakes early for its jerk (``computeMaxSpeedFromDistance``, ``TrajMath.hpp``), which counts as
-settling. The last leg of a mission was reported as done up to 3.6 s late, and a take-off 5 s late where the
-vehicle refused to be armed at first.
+On missions an item is over within NAV_ACC_RAD. It brakes early for its jerk
+(``computeMaxSpeedFromDistance``, ``TrajMath.hpp``), which counts as settling. The last leg of a mission was
+reported as done up to 3.6 s late, and a take-off 5 s late where the vehicle refused to be armed at first.
 """

@@ -11,7 +11,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.scene.timing import LegTiming, Rates
-from mmrs_mavlink.profiles import ARDUCOPTER, PX4_MULTICOPTER
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUROVER, PX4_MULTICOPTER
 from mmrs_mavlink.sitl.body import STEP, Body, Vector
 
 PACING = ARDUCOPTER.pacing
@@ -85,6 +85,22 @@ def test_a_px4_that_is_commanded_leg_by_leg_settles_as_long_as_is_planned(length
         seconds += STEP
     planned = Rates(5.0, 3.0, 1.5, figures).from_stop_to_stop((0.0, 0.0, 10.0), body.target)
     assert seconds == pytest.approx(planned, rel=0.12)
+
+
+@pytest.mark.parametrize(
+    ("figures", "length", "speed", "entering", "seconds"),
+    [
+        (ARDUROVER.pacing.mission, 7.21, 1.0, 2.0, 6.58),
+        (ARDUROVER.pacing.mission, 11.66, 0.7, 1.8, 15.78),
+        (ARDUROVER.pacing.mission, 6.08, 1.8, 1.8, 3.16),
+        (PX4_MULTICOPTER.pacing.mission, 6.0, 3.0, None, 3.70),
+    ],
+)
+def test_the_earliest_end_of_a_leg_is_no_later_than_measured(figures, length, speed, entering, seconds):
+    """Measured on ArduRover 4.7-dev, which came from faster legs and passed corners, and on PX4 1.15."""
+    soonest, leg = Rates(speed, 3.0, 1.5, figures).soonest(), ((0.0, 0.0, 10.0), (length, 0.0, 10.0))
+    least = soonest.from_stop_to_stop(*leg) if entering is None else soonest.eased(*leg, entering)
+    assert 0.8 * seconds < least < seconds
 
 
 @given(level, level, height, height, speeds, st.booleans())
