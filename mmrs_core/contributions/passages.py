@@ -21,12 +21,12 @@ class Passage(NamedTuple):
     """The end of a move that is passed.
 
     Attributes:
-        settling: seconds that the robot does not settle there.
-        overlap: seconds for which it is on this move and the next one at once.
+        saved: seconds by which this move is shorter: the robot begins the next one, and does not settle.
+        onward: seconds by which the next one is: the robot has begun it, and does not set out from a stop.
     """
 
-    settling: float
-    overlap: float
+    saved: float
+    onward: float
 
 
 class Passages:
@@ -109,4 +109,6 @@ class Passages:
             return None
         rates = self.kinematics(move).rates(move.speed)
         arriving = (path[-2], path[-1])
-        return Passage(rates.settling(*arriving), rates.overlap(arriving, (beyond[0], beyond[1])))
+        settling, both = rates.settling(*arriving), rates.overlap(arriving, (beyond[0], beyond[1])) / 2.0
+        starting = min(rates.timing.starting, settling)
+        return Passage(settling - starting + both, both + starting)

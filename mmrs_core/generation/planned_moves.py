@@ -61,7 +61,7 @@ def kinematics_of(robot: RobotProgram, input: TargetInput) -> Kinematics | None:
 
 def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
-    here, both = robot.home, 0.0
+    here, onward = robot.home, 0.0
     facing: float | None = None
     push: Push | None = STANDING
     local = input.program.frame.is_local
@@ -74,8 +74,8 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
         seconds = None
         if kind is not None and path is not None and passages is not None:
             ahead = passages.ahead(move, path)
-            saved = both + (ahead.settling + ahead.overlap / 2.0 if ahead is not None else 0.0)
-            both = ahead.overlap / 2.0 if ahead is not None else 0.0
+            saved = onward + (ahead.saved if ahead is not None else 0.0)
+            onward = ahead.onward if ahead is not None else 0.0
             limits = replace(passages.kinematics(move), facing=facing, push=push)
             duration = kind.seconds(move, path, limits, robot.travel_mode)
             facing = passages.facing(move, path, facing) if ahead is None else None

@@ -244,8 +244,8 @@ class SimulatedRobot(Vehicle):
         self._facing = self._passages.facing(move, path, self._facing) if ahead is None else None
         self._push = self._passages.push(move, path, self._push)
         if ahead is not None:
-            seconds -= ahead.settling + ahead.overlap / 2.0
-            self._rolling = ahead.overlap / 2.0
+            seconds -= ahead.saved
+            self._rolling = ahead.onward
         found = stretches(path, rates, max(0.0, seconds), kinematics, flow=self._flow())
         if not found:
             self._fault = Fault("WIND", "too strong to make headway")

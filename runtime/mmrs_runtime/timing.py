@@ -28,6 +28,7 @@ class LegTiming:
             and another one may be so much longer that begins there; so much shorter, too, without `still`.
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
         settling: seconds from the end of a leg until it is reported as done; negative: before its end.
+        starting: seconds of the settling that pass as it sets out from a stop.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
             after some time, as it builds up the thrust for it; and the time constant of that, seconds.
         stall: seconds for which it may stand at a target before it counts as reached, at most, unless it goes
@@ -57,6 +58,7 @@ class LegTiming:
     acceptance: float = 0.0
     still: float = 0.0
     settling: float = 0.0
+    starting: float = 0.0
     lag: float = 0.0
     lag_within: float = 1.0
     stall: float = 0.0

@@ -93,6 +93,7 @@ ROVER = AutopilotTiming(
         corner_radius=2.0,
         acceptance=0.5,
         settling=2.4,
+        starting=1.2,
         keeps_acceleration=False,
         spread=0.2,
         reporting=5.0,
@@ -103,7 +104,7 @@ ROVER = AutopilotTiming(
 )
 """ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default; neither is commanded, so that of its type
 need not hold. On missions it never reverses to turn, and corners count as passed within WP_RADIUS, which is
-set."""
+set. Half of the settling is before it sets out, as the first and last legs of runs show."""
 
 SUB = AutopilotTiming(
     step=LegTiming(

@@ -185,6 +185,23 @@ def test_the_last_leg_of_a_run_takes_until_the_program_notices():
     assert (middle - first, last - middle) == (0.0, 2.5)
 
 
+def test_the_first_leg_of_a_run_takes_what_the_vehicle_takes_to_set_out():
+    """A rover's took 1.2 s longer, and its last one less, in each of five runs."""
+    legs = [go_to(f"m{north}", (0.0, north, 20.0)) for north in (20.0, 40.0, 60.0)]
+    robot = robot_program("alpha", [*legs])
+    fluid = {index: replace(robot.transitions[index], fluid=True) for index in (1, 2)}
+    robot, given = replace(robot, transitions={**robot.transitions, **fluid}), checked(robot)
+    plain = replace(kinematics_of(given, robot), turning_radius=1.2)
+
+    def passed(starting):
+        kinematics = replace(plain, mission=replace(plain.mission, starting=starting))
+        passages = Passages(robot, given.move_kinds, kinematics, local=False)
+        return passages.ahead(legs[0], ((0.0, 0.0, 20.0), (0.0, 20.0, 20.0)))
+
+    late, at_once = passed(1.2), passed(0.0)
+    assert (late.saved, late.onward) == pytest.approx((at_once.saved - 1.2, at_once.onward + 1.2))
+
+
 def on_the_spot(name, **attributes):
     return move(name, name, **attributes)
 
