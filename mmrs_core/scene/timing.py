@@ -268,7 +268,8 @@ class Rates:
         """Return the fewest or most seconds of a leg: one counts as over before the robot stands at its end.
 
         That is where the next one begins, and how fast: so the robot may save the end and the begin of its
-        curve, or make up for what is left of the leg before, and come to a stop.
+        curve, or make up for what is left of the leg before, and come to a stop. One that is so slow all the
+        way has ended its leg as soon as it is near enough.
         """
         length, speed, up, down = self._limits(start, end)
         timing = self.timing
@@ -278,6 +279,8 @@ class Rates:
             seconds, fastest = _stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
             return seconds + self._lag(seconds, start, end) + max(0.0, self.timing.settled(fastest))
         still = min(timing.still, speed)
+        if speed <= timing.still:
+            length -= min(length, timing.acceptance)
         ends = [_reaching(still, limit, timing.jerk) for limit in (up, down)]
         whole = length + sum(metres for _, metres in ends)
         seconds, _ = _stop_to_stop(whole, speed, up, down, timing.jerk)
