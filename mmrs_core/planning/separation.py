@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -44,6 +44,9 @@ _SPARE = 0.05
 
 _ROUNDS = 8
 """Schedules that are made with later starts."""
+
+_SMALL = 4
+"""Robots up to which each of a team is settled first once, to find who starts later."""
 
 
 class TooNearError(InfeasibleError):
@@ -298,16 +301,28 @@ class Traffic:
     def later_starts(self) -> dict[str, float]:
         """Return when robots must leave home at the earliest to keep apart; empty if that does not help.
 
-        One after the other, that one is settled which starts the least later for those settled before.
+        One after the other, that one is settled which starts the least later for those settled before. In a
+        small team each robot is settled first once; the one after which the last is back earliest counts.
         """
-        left = {each.robot: each.steps for each in self.plan.robots}
-        shifts = {name: 0.0 for name, steps in left.items() if not steps}
-        while waiting := [name for name in left if name not in shifts]:
-            shift, name = min((self._shift(name, shifts), name) for name in waiting)
+        busy = {each.robot: each.steps for each in self.plan.robots if each.steps}
+        firsts = list(busy) if len(busy) <= _SMALL else [min(busy)]
+        found = [shifts for first in firsts if (shifts := self._settled(first, busy))]
+        best = min(
+            found,
+            key=lambda shifts: max(busy[name][-1].end + shift for name, shift in shifts.items()),
+            default={},
+        )
+        return {name: _leaves(busy[name]) + shift for name, shift in best.items() if shift}
+
+    def _settled(self, first: str, waiting: Iterable[str]) -> dict[str, float]:
+        """Return by how many seconds robots start later if that one does not; empty if that does not help."""
+        shifts = {first: 0.0}
+        while left := [name for name in waiting if name not in shifts]:
+            shift, name = min((self._shift(name, shifts), name) for name in left)
             if shift == inf:
                 return {}
             shifts[name] = shift
-        return {name: _leaves(left[name]) + shift for name, shift in shifts.items() if shift}
+        return shifts
 
     def _shift(self, late: str, fixed: Mapping[str, float]) -> float:
         """Return by how many seconds a robot must start later for others, late too; inf: never."""

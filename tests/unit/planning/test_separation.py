@@ -194,3 +194,15 @@ def test_deadlines_that_only_flying_at_once_can_keep_are_refused_with_what_is_sh
     whole = scene(team, works, tasks=tasks, minimum_separation=10.0)
     with pytest.raises(InfeasibleError, match=r"10\.001 m are required"):
         plan(whole)
+
+
+def test_of_two_robots_that_meet_the_one_starts_later_that_is_back_sooner():
+    team = (robot("a short one"), robot("the long one", (50.0, 0.0, 0.0)))
+    works = {
+        "near": {"a short one": visit((25.0, -100.0, 20.0), (25.0, 100.0, 20.0))},
+        "far": {"the long one": visit((20.0, 100.0, 20.0), (20.0, -100.0, 20.0), (20.0, -900.0, 20.0))},
+    }
+    whole = scene(team, works)
+    found = plan(whole)
+    assert first_conflict(whole, found, 10.0) is not None
+    assert set(Traffic(whole, found, 10.0).later_starts()) == {"a short one"}
