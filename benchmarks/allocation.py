@@ -127,7 +127,7 @@ def field(case: dict):
     out = np.linalg.norm(homes[:, None] - stops, axis=2)
     near, robots = _nearest(go[None]), _nearest_robots(out)
     return Field(
-        sizes=np.array([n, m, near.shape[1], robots.shape[1], 0]),
+        sizes=np.array([n, m, near.shape[1], robots.shape[1], 0, 0]),
         kinds=zeros(m, np.int64),
         out=out.ravel(),
         go=go.astype(np.float32).ravel(),

@@ -89,8 +89,6 @@ def plan(
     if stop_after is not None:
         if explain:
             raise typer.BadParameter("--explain goes with a whole plan, not with --stop-after")
-        if stop_after is Stage.VERIFY:
-            stages.settle_charges()
         say_json({"stage": stop_after.value, "value": _VALUES[stop_after](stages)})
         return 0
     folder = folder_of(project)
@@ -166,7 +164,6 @@ def require_sound(stages: CommandStages, name: str) -> None:
     """
     from mmrs_core.analysis.constraints import check_planned
 
-    stages.settle_charges()
     require_safe(stages.program, stages.verdicts, name)
     contributions = stages.session.contributions
     faults = check_planned(

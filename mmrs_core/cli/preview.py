@@ -113,7 +113,6 @@ def picture_of(stages: CommandStages) -> Picture:
     from mmrs_core.pictures.preview.from_plan import picture_of_plan
     from mmrs_core.pictures.preview.moves import with_moves
 
-    stages.settle_charges()
     symbols = stages.session.contributions.map_symbols
     picture = with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
     picture = with_problems(picture, stages.models, stages.warnings)

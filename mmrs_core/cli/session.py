@@ -142,7 +142,7 @@ class CommandStages(Stages):
     @cached_property
     def explanation(self) -> PlanExplanation:
         """Return why the plan is as it is."""
-        scene, plan = self.to_plan, self.plan
+        scene, plan = self.scene, self.plan
         with progress("explaining the plan"):
             return explain(scene, plan)
 

@@ -27,7 +27,7 @@ from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Position
-from mmrs_core.scene.timing import LEVEL, Rates
+from mmrs_core.scene.timing import LEVEL, MoveSeconds, Rates
 
 _NEAREST = 10
 """Other stops next to which a stop may be inserted."""
@@ -177,9 +177,11 @@ class _Fields:
         """Return the field of all stops."""
         tasks = [self._team.tasks[stop.job] for stop in self._stops]
         kinds = [self._kinds.index(self._team.kinds[name]) for name in self._team.pilots]
-        out, back = np.full((2, len(self._pilots), len(self._stops)), inf)
-        go = np.full((len(self._kinds), len(self._stops), len(self._stops)), inf, np.float32)
-        work = np.zeros((len(self._kinds), len(self._stops)))
+        limits = np.array([pilot.limit for pilot in self._pilots])
+        bounds = (0, 1) if limits.min() < inf else (0,)
+        out, back = np.full((2, len(bounds), len(self._pilots), len(self._stops)), inf)
+        go = np.full((len(bounds), len(self._kinds), len(self._stops), len(self._stops)), inf, np.float32)
+        work = np.zeros((len(bounds), len(self._kinds), len(self._stops)))
         able_kinds = [self._team.able_kinds(stop.job) for stop in self._stops]
         for k, kind in enumerate(self._kinds):
             materials = [
@@ -187,25 +189,30 @@ class _Fields:
             ]
             able = np.array([i for i, each in enumerate(materials) if each is not None], np.int64)
             robots = np.array([r for r, each in enumerate(kinds) if each == k], np.int64)
-            legs = _Legs(
-                [self._pilots[r] for r in robots.tolist()], [each for each in materials if each is not None]
-            )
-            work[k, able] = legs.work
-            for i, row in zip(able.tolist(), legs.between(), strict=True):
-                go[k, i, able] = row
-            out[np.ix_(robots, able)], back[np.ix_(robots, able)] = legs.home()
+            mine = [self._pilots[r] for r in robots.tolist()]
+            legs = _Legs(mine, [each for each in materials if each is not None], bounds)
+            work[:, k, able] = legs.work
+            for i, rows in zip(able.tolist(), legs.between(), strict=True):
+                go[:, k, i, able] = rows
+            some = np.ix_(np.array(bounds), robots, able)
+            out[some], back[some] = legs.home()
         places = {name: r for r, name in enumerate(self._team.pilots)}
         for i, stop in enumerate(self._stops):
             if len(self._team.able(stop.job)) < len(kinds):
                 unable = np.ones(len(kinds), np.bool_)
                 unable[[places[name] for name in self._team.able(stop.job)]] = False
-                out[unable, i] = inf
-        near, near_robots = _nearest(go), _nearest_robots(out)
+                out[:, unable, i] = inf
+        near, near_robots = _nearest(go[0]), _nearest_robots(out[0])
         others = [self._others(i) if task.wanted is not None else [] for i, task in enumerate(tasks)]
         most = max(map(len, others))
         apart = np.array([[*each, *([-1] * (most - len(each)))] for each in others], np.int64)
         return Field(
-            sizes=np.array([*out.T.shape, near.shape[1], near_robots.shape[1], most]),
+            sizes=np.array(
+                [
+                    *(len(self._stops), len(self._pilots), near.shape[1], near_robots.shape[1], most),
+                    len(self._kinds) if len(bounds) > 1 else 0,
+                ]
+            ),
             kinds=np.array(kinds),
             out=out.ravel(),
             go=go.ravel(),
@@ -214,7 +221,7 @@ class _Fields:
             near=near.ravel(),
             near_robots=near_robots.ravel(),
             apart=apart.ravel(),
-            limits=np.array([pilot.limit for pilot in self._pilots]),
+            limits=limits,
             recharges=np.array([pilot.kinematics.recharge or 0.0 for pilot in self._pilots]),
             earliest=np.array([task.earliest or 0.0 for task in tasks]),
             deadlines=np.array([inf if task.deadline is None else task.deadline for task in tasks]),
@@ -239,10 +246,18 @@ class _Legs:
     """What robots of one kind take from stop to stop, and from and to their homes.
 
     Attributes:
-        work: seconds at each stop, from where a robot comes to first.
+        work: (bounds, stops), seconds at each stop, from where a robot comes to first.
     """
 
-    def __init__(self, pilots: Sequence[Pilot], materials: Sequence[Material]) -> None:
+    def __init__(self, pilots: Sequence[Pilot], materials: Sequence[Material], bounds: Sequence[int]) -> None:
+        """Make it.
+
+        Args:
+            pilots: of the robots, of one kind.
+            materials: of the stops.
+            bounds: 0: as expected; 1: at most.
+        """
+        self._bounds = bounds
         self._pilots, approaches = pilots, [each.approach(0) for each in materials]
         self._begins = [each.via[0] for each in approaches]
         self._speeds = [each.speed for each in approaches]
@@ -251,68 +266,77 @@ class _Legs:
         places = _places([*self._homes(), *self._begins, *self._ends])
         self._longest = max(1.0, dist(places[:, :2].min(0), places[:, :2].max(0)))
         self._seconds = dict[float | None, _LegSeconds]()
-        self.work = [
-            material.seconds(0, len(material) - 1)
-            + sum(travel.at_speed(travel.hop(*leg), approach.speed).seconds for leg in pairwise(approach.via))
-            for material, approach in zip(materials, approaches, strict=True)
-        ]
+        self.work: Matrix = np.zeros((len(bounds), len(materials)))
+        for i, (material, approach) in enumerate(zip(materials, approaches, strict=True)):
+            self.work[:, i] = self._of(material.bounds(0, len(material) - 1))
+            for leg in pairwise(approach.via):
+                self.work[:, i] += self._of(travel.at_speed(travel.hop(*leg), approach.speed).bounds)
+
+    def _of(self, seconds: MoveSeconds) -> list[float]:
+        return [seconds[1 + bound] for bound in self._bounds]
 
     def between(self) -> Iterator[Singles]:
-        """Yield, by stop, the seconds from its end to the begin of each."""
+        """Yield, by stop, (bounds, stops) the seconds from its end to the begin of each."""
         begins, travel = _places(self._begins), self._pilots[0].travel
         for first in range(0, len(begins), _ROWS):
             ends = self._ends[first : first + _ROWS]
             rows = self._straight(_places(ends), begins, self._speeds)
-            for end, row in zip(ends, rows, strict=True):
+            for end, row in zip(ends, rows.transpose(1, 0, 2), strict=True):
                 if not travel.straight:
-                    for j in np.argsort(row, kind="stable")[:_ROUTED].tolist():
-                        row[j] = self._routed(self._pilots[0], end, j)
+                    for j in np.argsort(row[0], kind="stable")[:_ROUTED].tolist():
+                        row[:, j] = self._routed(self._pilots[0], end, j)
                 yield row
 
     def home(self) -> tuple[Matrix, Matrix]:
-        """Return (robots, stops) the seconds from homes to stops, and from stops until robots are back."""
+        """Return (bounds, robots, stops) the seconds from homes to stops, and from there back."""
         kinematics = self._pilots[0].kinematics
         homes, begins, ends = (_places(each) for each in (self._homes(), self._begins, self._ends))
-        up, down = np.zeros(len(begins)), np.zeros(len(ends))
+        up, down = np.zeros((len(self._bounds), len(begins))), np.zeros((len(self._bounds), len(ends)))
         if kinematics.launches:
             ground = float(homes[:, 2].mean())
-            up = np.array([kinematics.launching(height - ground) for height in begins[:, 2].tolist()])
-            down = np.array([kinematics.landing(height - ground) for height in ends[:, 2].tolist()])
+            longer = np.array([[1.0 + bound * kinematics.timing.spread] for bound in self._bounds])
+            up = longer * [kinematics.launching(height - ground) for height in begins[:, 2].tolist()]
+            down = longer * [kinematics.landing(height - ground) for height in ends[:, 2].tolist()]
             homes, begins, ends = (each * (1.0, 1.0, 0.0) for each in (homes, begins, ends))
-        out = self._straight(homes, begins, self._speeds) + up
-        back = self._straight(ends, homes, [None] * len(homes)).T + down
+        out = self._straight(homes, begins, self._speeds) + up[:, None]
+        back = self._straight(ends, homes, [None] * len(homes)).transpose(0, 2, 1) + down[:, None]
         if self._pilots[0].travel.straight:
             return out, back
-        near = np.argsort(out, axis=0, kind="stable")[:_ROUTED].T
+        near = np.argsort(out[0], axis=0, kind="stable")[:_ROUTED].T
         for stop, robots in enumerate(near.tolist()):
             for robot in robots:
                 pilot = self._pilots[robot]
-                out[robot, stop] = self._routed(pilot, None, stop)
-                back[robot, stop] = pilot.exit_seconds(self._ends[stop])
+                out[:, robot, stop] = self._routed(pilot, None, stop)
+                end = self._ends[stop]
+                back[:, robot, stop] = (pilot.exit_seconds(end), pilot.exit_longest(end))[: len(self._bounds)]
         return out, back
 
     def _homes(self) -> list[Position]:
         return [pilot.robot.home for pilot in self._pilots]
 
-    def _routed(self, pilot: Pilot, start: Position | None, stop: int) -> float:
+    def _routed(self, pilot: Pilot, start: Position | None, stop: int) -> list[float]:
         """Return the seconds of the route from a place to a stop, None: from home; inf if there is none."""
         goal, travel = self._begins[stop], pilot.travel
         try:
             route = travel.leave(goal) if start is None else travel.go(start, goal)
         except UnreachableError:
-            return inf
-        return 0.0 if start == goal else travel.at_speed(route, self._speeds[stop]).seconds
+            return [inf for _ in self._bounds]
+        seconds = travel.at_speed(route, self._speeds[stop]).bounds
+        return self._of(MoveSeconds.exactly(0.0) if start == goal else seconds)
 
     def _straight(self, starts: Matrix, goals: Matrix, speeds: Sequence[float | None]) -> Singles:
-        """Return (starts, goals) the seconds of straight legs, at the speeds of the goals."""
-        found: Singles = np.empty((len(starts), len(goals)), np.float32)
+        """Return (bounds, starts, goals) the seconds of straight legs, at the speeds of the goals."""
+        found: Singles = np.empty((len(self._bounds), len(starts), len(goals)), np.float32)
         distinct = dict.fromkeys(speeds)
         for speed in distinct:
             if speed not in self._seconds:
-                self._seconds[speed] = _LegSeconds(self._pilots[0].kinematics.rates(speed), self._longest)
+                rates = self._pilots[0].travel.bounds(speed)
+                self._seconds[speed] = _LegSeconds(
+                    [rates[1 + bound] for bound in self._bounds], self._longest
+                )
             alike = [j for j, each in enumerate(speeds) if each == speed] if len(distinct) > 1 else ()
             some = alike or slice(None)
-            found[:, some] = self._seconds[speed].between(starts, goals[some])
+            found[:, :, some] = self._seconds[speed].between(starts, goals[some])
         return found
 
 
@@ -327,15 +351,19 @@ class _LegSeconds:
     leg, on which a robot never reaches its speed, takes as long as the root of its length says.
     """
 
-    def __init__(self, rates: Rates, longest: float) -> None:
+    def __init__(self, bounds: Sequence[Rates], longest: float) -> None:
         roots = np.linspace(0.0, longest**0.5, _LENGTHS)
-        known = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (root * root, 0.0, 0.0)) for root in roots.tolist()]
-        self._known, self._per_root = np.array(known, np.float32), np.float32((_LENGTHS - 1) / roots[-1])
-        self._more = np.diff(self._known, append=self._known[-1])
-        self._up, self._down = (rates.upright(sign * 1.0) for sign in (1.0, -1.0))
+        lengths = [(root * root, 0.0, 0.0) for root in roots.tolist()]
+        self._per_root = np.float32((_LENGTHS - 1) / roots[-1])
+        self._known: Singles = np.array(
+            [[rates.from_stop_to_stop((0.0, 0.0, 0.0), each) for each in lengths] for rates in bounds],
+            np.float32,
+        )
+        self._more = np.diff(self._known, append=self._known[:, -1:])
+        self._upright = [[each.share * each.upright(sign) for sign in (1.0, -1.0)] for each in bounds]
 
     def between(self, starts: Matrix, goals: Matrix) -> Singles:
-        """Return (starts, goals) the seconds of legs."""
+        """Return (bounds, starts, goals) the seconds of legs."""
         (x, y, z), (to_x, to_y, to_z) = starts.T[:, :, None], goals.T[:, None]
         level = ((to_x - x) ** 2).astype(np.float32)
         level += ((to_y - y) ** 2).astype(np.float32)
@@ -343,14 +371,17 @@ class _LegSeconds:
         roots *= self._per_root
         column = roots.astype(np.int32)
         roots -= column
-        found: Singles = self._more.take(column)
-        found *= roots
-        found += self._known.take(column)
+        found: Singles = np.empty((len(self._known), *column.shape), np.float32)
+        for each, known, more in zip(found, self._known, self._more, strict=True):
+            more.take(column, out=each)
+            each *= roots
+            each += known.take(column)
         if z.size and to_z.size and max(z.max() - to_z.min(), to_z.max() - z.min()) > LEVEL:
             rise = to_z - z
-            with np.errstate(invalid="ignore"):  # no height takes no time, even where none can be gained
-                upright = np.abs(rise) * np.where(rise > 0.0, self._up, self._down)
-            np.maximum(found, np.where(np.abs(rise) <= LEVEL, 0.0, upright), out=found)
+            for each, (up, down) in zip(found, self._upright, strict=True):
+                with np.errstate(invalid="ignore"):  # no height takes no time, even where none can be gained
+                    upright = np.abs(rise) * np.where(rise > 0.0, up, down)
+                np.maximum(each, np.where(np.abs(rise) <= LEVEL, 0.0, upright), out=each)
         return found
 
 

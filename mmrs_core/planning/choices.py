@@ -10,6 +10,7 @@ from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import ApproachRoute, Ready, State
 from mmrs_core.scene import Branch, Position
+from mmrs_core.scene.timing import noticing
 
 MaterialOf = Callable[[str], "Material | None"]
 """The material of a task for the robot; None if it cannot do the task."""
@@ -28,7 +29,7 @@ def carry_out(
     begin = _begin(choice, material_of)
     if begin is None:
         return None
-    there = pilot.reach(state, begin, pilot.exit_seconds(begin.via[-1]), ready, choice.name)
+    there = pilot.reach(state, begin, pilot.exit_longest(begin.via[-1]), ready, choice.name)
     return None if there is None else _branched(pilot, choice, material_of, there, record)
 
 
@@ -66,7 +67,7 @@ def _branched(
     if not found:
         return None
     best = min(found, key=lambda each: max(end.time for end in each))
-    return _merged(choice, state, best)
+    return _merged(pilot, choice, state, best)
 
 
 def _arm(
@@ -91,23 +92,31 @@ def _arm(
 
 def _joined(pilot: Pilot, ends: Sequence[State], place: Position, name: str) -> list[State] | None:
     """Return the arms' ends once all have come to one place; None if one cannot."""
-    need = pilot.exit_seconds(place)
+    need = pilot.exit_longest(place)
     there = [pilot.reach(end, ApproachRoute((place,)), need, _NOTHING, name) for end in ends]
     found = [end for end in there if end is not None]
     return found if len(found) == len(ends) else None
 
 
-def _merged(choice: Choice, state: State, ends: Sequence[State]) -> State:
-    """Return a state that is on the safe side of every arm's end."""
+def _merged(pilot: Pilot, choice: Choice, state: State, ends: Sequence[State]) -> State:
+    """Return a state that is on the safe side of every arm's end.
+
+    Between two tests, before the first or behind the last, the robot may have to stop.
+    """
     arms = tuple((condition, end.steps()) for (condition, _), end in zip(choice.arms, ends, strict=True))
     time = max(end.time for end in ends)
+    stops = len(arms) * noticing(pilot.kinematics.timing)
     branch = Branch(state.time, time, choice.name, arms, ends[0].at)
     return State(
         time=time,
         at=ends[0].at,
         away=True,
-        used=max(end.used for end in ends),
+        used=max(end.used for end in ends) + stops,
+        before=max(end.before for end in ends),
+        since=min((end.since for end in ends if end.since is not None), default=None),
         lead=time - min(end.time - end.lead for end in ends),
+        early=min(end.early for end in ends),
+        late=max(end.late for end in ends) + stops,
         length=max(end.length for end in ends),
         busy=max(end.busy for end in ends),
         sorties=max(end.sorties for end in ends),

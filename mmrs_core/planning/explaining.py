@@ -12,13 +12,14 @@ from graphlib import TopologicalSorter
 from itertools import pairwise
 from math import dist, inf
 
+from mmrs_core.planning.charges import most_used
 from mmrs_core.planning.critical_path import Link, critical_path
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import distance_to_keep
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.scene import Branch, Launch, Plan, Position, Recharge, Recover, RobotPlan, Scene, Serve, Step
+from mmrs_core.scene import Branch, Plan, Position, Scene, Serve, Step
 
 _MOST = 400_000
 """Schedules that are tried, times their jobs, at most."""
@@ -288,19 +289,17 @@ class _Explaining:
 
     def _charge(self) -> str:
         """Return which sortie is nearest to its limit, in words; empty where there is no limit."""
+        most = most_used(self._plan, self._team.pilots)
         used = [
-            (seconds / limit, each.robot, seconds, limit)
+            (most[each.robot] / limit, each.robot, most[each.robot], limit)
             for each in self._plan.robots
             if each.steps and (limit := self._team.pilots[each.robot].limit) < inf
-            for seconds in (
-                _longest_sortie(each, launches=self._team.pilots[each.robot].kinematics.launches),
-            )
         ]
         if not used:
             return ""
         share, robot, seconds, limit = max(used)
         part = f"{seconds:.0f} of the {limit:.0f} s of a charge"
-        return f"'{robot}' uses {part} ({100.0 * share:.0f} %)"
+        return f"'{robot}' uses up to {part} ({100.0 * share:.0f} %)"
 
     def _deadline(self) -> str:
         spare = [
@@ -328,19 +327,6 @@ def _best_for(robot: str, tasks: Sequence[TaskExplanation]) -> tuple[str, Altern
 def _ends_of(team: Team, found: Schedule) -> list[float]:
     """Return when each robot with something to do has finished: where it is, if it need not return."""
     return [team.pilots[name].finish(found.states[name]).time for name in found.backs]
-
-
-def _longest_sortie(plan: RobotPlan, *, launches: bool) -> float:
-    """Return the seconds of a robot's longest time on one charge, as its `Pilot` counts it."""
-    since = longest = 0.0
-    for step in plan.steps:
-        if isinstance(step, Launch):
-            since = step.begin
-        elif isinstance(step, Recharge):
-            since = step.end
-        if not launches or isinstance(step, Recover):
-            longest = max(longest, step.end - since)
-    return longest
 
 
 def _groups(plan: Plan) -> dict[str, tuple[str, ...]]:

@@ -24,6 +24,7 @@ from mmrs_core.planning.strokes import (
     turned,
 )
 from mmrs_core.scene import Position, Stroke, Work
+from mmrs_core.scene.timing import MoveSeconds
 
 _PORTIONS_PER_ROBOT = 50
 """Portions that a robot's share is made of, if all capable robots share alike: how finely it is balanced."""
@@ -39,8 +40,8 @@ class Material:
         task: name of its task.
         rule: name of the rule that made it.
         portions: strokes of each portion; robots take runs of portions.
-        begins, ends: seconds at which each portion begins and ends, see `paced`.
-        soonest: likewise, (begin, end) where the robot is as quick as it may be.
+        spans: seconds at which each portion begins and ends, see `paced`: where the robot is as quick as it
+            may be, as expected, and as slow.
         entry: where the robot with the first portion goes first; None: nowhere.
         speeds: by portion: at which the robot goes to it, metres per second; None: its cruise.
         whole: whether one robot must do all of it in one sortie.
@@ -49,9 +50,7 @@ class Material:
     task: str
     rule: str
     portions: tuple[tuple[Stroke, ...], ...]
-    begins: tuple[float, ...]
-    ends: tuple[float, ...]
-    soonest: tuple[tuple[float, float], ...]
+    spans: tuple[tuple[tuple[float, float], ...], ...]
     entry: Position | None
     speeds: tuple[float | None, ...]
     whole: bool
@@ -69,11 +68,20 @@ class Material:
 
     def seconds(self, begin: int, end: int) -> float:
         """Return the seconds from the beginning of one portion to the end of another, hops included."""
-        return self.ends[end] - self.begins[begin]
+        return self._span(1, begin, end)
 
-    def lead(self, begin: int, end: int) -> float:
-        """Return by how many seconds the same may be quicker."""
-        return max(0.0, self.seconds(begin, end) - (self.soonest[end][1] - self.soonest[begin][0]))
+    def longest(self, begin: int, end: int) -> float:
+        """Return the seconds of the same at most."""
+        return self._span(2, begin, end)
+
+    def bounds(self, begin: int, end: int) -> MoveSeconds:
+        """Return how long the same takes."""
+        shortest, expected, longest = (self._span(each, begin, end) for each in range(3))
+        return MoveSeconds(min(shortest, expected), expected, longest)
+
+    def _span(self, bound: int, begin: int, end: int) -> float:
+        spans = self.spans[bound]
+        return spans[end][1] - spans[begin][0]
 
     def approach(self, index: int) -> ApproachRoute:
         """Return the route by which a robot that begins with a portion comes there."""
@@ -87,9 +95,7 @@ class Material:
         return replace(
             self,
             portions=self.portions[kept],
-            begins=self.begins[kept],
-            ends=self.ends[kept],
-            soonest=self.soonest[kept],
+            spans=tuple(each[kept] for each in self.spans),
             entry=self.entry if begin == 0 else None,
             speeds=self.speeds[kept],
         )
@@ -157,14 +163,11 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
     portions = layout.portions
     if backwards:
         portions = tuple(tuple(turned(part) for part in reversed(portion)) for portion in reversed(portions))
-    spans = _of_portions(portions, pilot)
     return Material(
         task=task,
         rule=work.rule,
         portions=portions,
-        begins=tuple(begin for begin, _ in spans),
-        ends=tuple(end for _, end in spans),
-        soonest=_of_portions(portions, pilot, soonest=True),
+        spans=tuple(_of_portions(portions, pilot, bound) for bound in (-1, 0, 1)),
         entry=_entry(work, pilot),
         speeds=tuple(approach_speed(portion[0], pilot.kinematics) for portion in portions),
         whole=not work.divisible,
@@ -172,10 +175,10 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
 
 
 def _of_portions(
-    portions: Sequence[Sequence[Stroke]], pilot: Pilot, *, soonest: bool = False
+    portions: Sequence[Sequence[Stroke]], pilot: Pilot, bound: int
 ) -> tuple[tuple[float, float], ...]:
     parts = [part for portion in portions for part in portion]
-    spans = iter(paced(parts, pilot, soonest=soonest))
+    spans = iter(paced(parts, pilot, bound))
     own = [[next(spans) for _ in portion] for portion in portions]
     return tuple((each[0][0], each[-1][1]) for each in own)
 
@@ -245,14 +248,14 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
         yield _why_unreachable(material, pilot, worst)
     elif short[worst] > 1e-9:
         yield (
-            f"{_words(material, worst)} takes {ceil(pilot.limit + short[worst])} s there and back; one"
+            f"{_words(material, worst)} takes up to {ceil(pilot.limit + short[worst])} s there and back; one"
             f" charge allows {floor(pilot.limit)} s: {ceil(short[worst])} s short"
         )
 
 
 def _why_unreachable(material: Material, pilot: Pilot, index: int) -> str:
     try:
-        _sortie_seconds(material, pilot, index)
+        _longest_sortie(material, pilot, index)
     except UnreachableError as error:
         return str(error)
     return f"it cannot get to or from {_words(material, index)}"
@@ -268,16 +271,16 @@ def shortages(material: Material, pilot: Pilot) -> list[float]:
     found = []
     for index in range(len(material)):
         try:
-            found.append(_sortie_seconds(material, pilot, index) - pilot.limit)
+            found.append(_longest_sortie(material, pilot, index) - pilot.limit)
         except UnreachableError:
             found.append(inf)
     return found
 
 
-def _sortie_seconds(material: Material, pilot: Pilot, index: int) -> float:
+def _longest_sortie(material: Material, pilot: Pilot, index: int) -> float:
     approach = material.approach(index)
     routes = [pilot.travel.leave(approach.via[0])]
     routes += [pilot.travel.hop(one, two) for one, two in pairwise(approach.via)]
-    out = sum(pilot.travel.at_speed(route, approach.speed).seconds for route in routes)
-    back = pilot.exit_route(material.last(index)).seconds
-    return out + material.seconds(index, index) + back
+    out = sum(pilot.travel.at_speed(route, approach.speed).longest for route in routes)
+    back = pilot.exit_route(material.last(index)).longest
+    return pilot.fresh + out + material.longest(index, index) + back + pilot.stopping

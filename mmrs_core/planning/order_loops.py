@@ -62,14 +62,17 @@ def may_do(field: Field, line: Line, stop: int, robot: int) -> bool:
 def served(field: Field, line: Line, stop: int, robot: int, ready: float) -> tuple[float, float]:
     """Return when a robot begins with a stop, and the charge taken after it, recharged before if need be."""
     n, here, time, used = field.sizes[0], line.here[robot], line.free[robot], line.used[robot]
-    out, kind = field.out[robot * n + stop], field.kinds[robot] * n
-    spent = field.work[kind + stop]
-    away = field.go[(kind + here) * n + stop] if here < n else out
-    if here < n and used + away + spent + field.back[robot * n + stop] > field.limits[robot]:
+    row, kind, kinds = robot * n + stop, field.kinds[robot], field.sizes[5]
+    away, more = field.out[row], field.sizes[1] * n if kinds else 0
+    most, work = field.out[more + row], field.work[(kinds + kind) * n + stop]
+    if here < n:
+        gone = used + field.go[((kinds + kind) * n + here) * n + stop]
+        if gone + work + field.back[more + row] <= field.limits[robot]:
+            away = field.go[(kind * n + here) * n + stop]
+            begin = max(time + away, ready)
+            return begin, gone + work + (begin - time - away)
         time += field.back[robot * n + here] + field.recharges[robot]
-        used, away, here = 0.0, out, n
-    begin = max(time + away, ready)
-    return begin, used + (away if here >= n else begin - time) + spent
+    return max(time + away, ready), most + work
 
 
 def carry_out(field: Field, waits: Waits, line: Line) -> float:

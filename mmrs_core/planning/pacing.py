@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import dist
 
 from mmrs_core.planning.sorties import Pilot
@@ -15,13 +15,18 @@ from mmrs_core.planning.strokes import (
     continues,
     joined,
     length_of,
+    longest_end,
     stops_of,
     uncertain_seconds,
 )
 from mmrs_core.scene import ActionAt, Position, Stroke
+from mmrs_core.scene.timing import acting
+
+SHORTEST_RUN = 3
+"""Legs without a stop from which an autopilot may be given them as a mission."""
 
 
-def paced(parts: Sequence[Stroke], pilot: Pilot, *, soonest: bool = False) -> list[tuple[float, float]]:
+def paced(parts: Sequence[Stroke], pilot: Pilot, bound: int = 0) -> list[tuple[float, float]]:
     """Return (begin, end) in seconds of each part of a work, hops included.
 
     The time for all from one part to another is the end of the latter less the begin of the former: an
@@ -32,18 +37,19 @@ def paced(parts: Sequence[Stroke], pilot: Pilot, *, soonest: bool = False) -> li
     Args:
         parts: in order.
         pilot: of the robot.
-        soonest: whether the robot is as quick as it may be: it does not turn, and does not stop
-            where nothing is done and its routes are fluid. Then the time is no more than any run takes.
+        bound: -1: the robot is as quick as it may be: it does not turn, and does not stop where nothing is
+            done and its routes are fluid. Then the time is no more than any run takes. 1: it is as slow as
+            it may be. 0: as expected.
     """
     spans: list[tuple[float, float]] = []
     now = 0.0
     here: Position | None = None
     for chain in _chains(parts):
         if here is not None:
-            now += pilot.hop_seconds(here, chain[0], soonest=soonest)
-        key = (soonest, tuple(chain))
+            now += pilot.hop_seconds(here, chain[0])[1 + bound]
+        key = (bound, tuple(chain))
         if (known := pilot.paces.get(key)) is None:
-            known = pilot.paces[key] = _of_chain(chain, pilot, soonest)
+            known = pilot.paces[key] = _of_chain(chain, pilot, bound)
         spans += [(now + begin, now + end) for begin, end in known]
         now, here = spans[-1][1], chain[-1].points[-1]
     return spans
@@ -61,9 +67,9 @@ def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:
         yield chain
 
 
-def _of_chain(chain: Sequence[Stroke], pilot: Pilot, soonest: bool) -> list[tuple[float, float]]:
+def _of_chain(chain: Sequence[Stroke], pilot: Pilot, bound: int) -> list[tuple[float, float]]:
     (whole,) = joined(chain)
-    line = _Line(whole, pilot, soonest)
+    line = _Line(whole, pilot, bound)
     begin, done = 0.0, 0.0
     spans = []
     for one, _ in pairwise(chain):
@@ -71,7 +77,7 @@ def _of_chain(chain: Sequence[Stroke], pilot: Pilot, soonest: bool) -> list[tupl
         end, after = line.pause(done, one)
         spans.append((begin, end))
         begin = after
-    return [*spans, (begin, line.whole)]
+    return [(begin, end + line.beside) for begin, end in [*spans, (begin, line.whole)]]
 
 
 class _Line:
@@ -79,38 +85,58 @@ class _Line:
 
     Attributes:
         whole: seconds of the whole stroke.
+        beside: seconds that the legs before and after it may take longer, as it is flown in one go with them.
     """
 
-    def __init__(self, stroke: Stroke, pilot: Pilot, soonest: bool) -> None:
-        self._robot = pilot.robot
-        rates = pilot.kinematics.rates(commanded_speed(stroke, pilot.kinematics))
-        self._rates = rates.soonest() if soonest else rates
-        self._eased = soonest and pilot.travel.fluid
+    def __init__(self, stroke: Stroke, pilot: Pilot, bound: int) -> None:
+        self._robot, self._timing, self._bound = pilot.robot, pilot.kinematics.timing, bound
+        self._rates = pilot.travel.bounds(commanded_speed(stroke, pilot.kinematics))[1 + bound]
+        self._eased = bound < 0 and pilot.travel.fluid
         self._transit = pilot.kinematics.cruise
         self._stops = stops_of(stroke)
+        self._arcs = [0.0, *accumulate(dist(one, two) for one, two in pairwise(self._stops))]
         todo = list(stroke.commands)
-        due = list(_due(todo, 0.0))
-        stands = bool(due)
-        self._arcs, self._arrivals, self._departures = [0.0], [0.0], [self._acting(due)]
-        for one, two in pairwise(self._stops):
-            self._arcs.append(self._arcs[-1] + dist(one, two))
-            due = list(_due(todo, self._arcs[-1]))
-            stood, stands = stands, bool(due)
-            seconds = (
-                self._leg(one, two) if not (stood and stands) else self._rates.from_stop_to_stop(one, two)
-            )
+        due = [list(_due(todo, arc)) for arc in self._arcs]
+        uploaded = pilot.travel.uploaded(commanded_speed(stroke, pilot.kinematics)) if bound > 0 else None
+        runs = list(_runs(stroke, self._halts(stroke, pilot, due))) if uploaded is not None else []
+        self._uploaded, self._in_runs = uploaded, {leg for run, _ in runs for leg in run}
+        self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
+        self._arrivals, self._departures = [0.0], [self._acting(due[0])]
+        for i, (one, two) in enumerate(pairwise(self._stops)):
+            between = bool(due[i] and due[i + 1])
+            seconds = self._rates.from_stop_to_stop(one, two) if between else self._leg(i, one, two)
             self._arrivals.append(self._departures[-1] + seconds)
-            self._departures.append(self._arrivals[-1] + self._acting(due))
-        turning = 0.0 if soonest else uncertain_seconds(stroke, pilot.kinematics)
-        self.whole = self._departures[-1] + stroke.hold + turning
+            self._departures.append(self._arrivals[-1] + self._acting(due[i + 1]))
+        at_the_end = (
+            stroke.hold,
+            stroke.hold + uncertain_seconds(stroke, pilot.kinematics),
+            longest_end(stroke, pilot.kinematics),
+        )
+        self.whole = self._departures[-1] + at_the_end[1 + bound]
 
-    def _leg(self, one: Position, two: Position) -> float:
-        if not self._eased:
-            return self._rates.from_stop_to_stop(one, two)
-        return self._rates.eased(one, two, 0.0 if self._arcs[-2] else self._transit)
+    def _halts(self, stroke: Stroke, pilot: Pilot, due: Sequence[Sequence[ActionAt]]) -> list[bool]:
+        """Return at which of its places the robot stops for certain."""
+        halts, speed = [bool(each) for each in due], commanded_speed(stroke, pilot.kinematics)
+        corners = pilot.travel.uploading
+        for i in range(1, len(halts) - 1):
+            if not halts[i] and corners is not None:
+                start, corner, end = self._stops[i - 1 : i + 2]
+                halts[i] = not corners.may_pass(start, corner, end, speed)
+        return halts
+
+    def _leg(self, index: int, one: Position, two: Position) -> float:
+        if self._eased:
+            return self._rates.eased(one, two, 0.0 if index else self._transit)
+        seconds = self._rates.from_stop_to_stop(one, two)
+        if self._uploaded is None or index not in self._in_runs:
+            return seconds
+        return max(seconds, self._uploaded.from_stop_to_stop(one, two))
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
-        return sum(action_seconds(self._robot.type, action) for action in actions)
+        seconds = [action_seconds(self._robot.type, action) for action in actions]
+        return (
+            sum(acting(each, self._timing).longest for each in seconds) if self._bound > 0 else sum(seconds)
+        )
 
     def pause(self, arc: float, part: Stroke) -> tuple[float, float]:
         """Return when the robot has come to the end of a part, and when the next one must begin."""
@@ -120,8 +146,27 @@ class _Line:
             time = self._arrivals[stop] + self._acting(a for a in part.commands if a.at > length - NEAR)
             return time, time
         place = part.points[-1]
-        end = self._departures[stop - 1] + self._leg(self._stops[stop - 1], place)
-        return end, self._arrivals[stop] - self._leg(place, self._stops[stop])
+        end = self._departures[stop - 1] + self._leg(stop - 1, self._stops[stop - 1], place)
+        return end, self._arrivals[stop] - self._leg(stop - 1, place, self._stops[stop])
+
+
+def _runs(stroke: Stroke, halts: Sequence[bool]) -> Iterator[tuple[range, int]]:
+    """Yield the legs that may be part of a mission that is uploaded, and how many of its ends go on.
+
+    Args:
+        stroke: of the legs.
+        halts: whether the robot stops for certain before each leg, and after the last.
+    """
+    if stroke.look is not None:
+        return
+    last, passes = len(halts) - 1, not stroke.settles and not stroke.hold and stroke.object is None
+    stops = [0, *(i for i in range(1, last) if halts[i]), last]
+    for begin, end in pairwise(stops):
+        ends = (not begin and not halts[0] and not stroke.settles) + (
+            end == last and not halts[last] and passes
+        )
+        if end - begin + ends >= SHORTEST_RUN:
+            yield range(begin, end), ends
 
 
 def _due(todo: list[ActionAt], arc: float) -> Iterator[ActionAt]:

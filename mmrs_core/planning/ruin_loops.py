@@ -37,7 +37,8 @@ class Field(NamedTuple):
     """What is to be done and by whom: n stops, m robots, k sorts of robots.
 
     Attributes:
-        sizes: n, m, and the columns of `near`, `near_robots` and `apart`.
+        sizes: n, m, the columns of `near`, `near_robots` and `apart`, and k, if what follows from `out` to
+            `work` comes twice: as expected and, behind that, at most, as charges count it; 0: only once.
         kinds: (m), of each robot.
         out: (m, n), seconds from a robot's home to a stop; inf: it cannot do that one.
         go: (k, n, n), seconds from one stop to another.
@@ -126,6 +127,22 @@ def travel(field: Field, robot: int, one: int, two: int) -> float:
     return field.go[(field.kinds[robot] * n + one) * n + two]
 
 
+def used_on(field: Field, robot: int, one: int, two: int) -> float:
+    """Return the seconds that `travel` takes of a charge at most."""
+    n, m, k = field.sizes[0], field.sizes[1], field.sizes[5]
+    more = m * n if k else 0
+    if one >= n:
+        return 0.0 if two >= n else field.out[more + robot * n + two]
+    if two >= n:
+        return field.back[more + robot * n + one]
+    return field.go[((k + field.kinds[robot]) * n + one) * n + two]
+
+
+def used_at(field: Field, robot: int, stop: int) -> float:
+    """Return the seconds that the work at a stop takes of a charge at most."""
+    return field.work[(field.sizes[5] + field.kinds[robot]) * field.sizes[0] + stop]
+
+
 def retime(field: Field, tours: Tours, robot: int) -> None:
     """Bring the times of a tour up to date, recharges at home included."""
     n = field.sizes[0]
@@ -134,11 +151,13 @@ def retime(field: Field, tours: Tours, robot: int) -> None:
     here, stop = home, tours.after[home]
     while stop != home:
         away, spent = travel(field, robot, here, stop), field.work[work + stop]
-        if here != home and used + away + spent + field.back[row + stop] > field.limits[robot]:
+        most = used + used_on(field, robot, here, stop) + used_at(field, robot, stop)
+        if here != home and most + used_on(field, robot, stop, home) > field.limits[robot]:
             time += field.back[row + here] + field.recharges[robot]
-            used, away, here = 0.0, field.out[row + stop], home
+            away, here = field.out[row + stop], home
+            most = used_on(field, robot, home, stop) + used_at(field, robot, stop)
         begin = max(time + away, field.earliest[stop])
-        used += (away if here == home else begin - time) + spent
+        used = most + (0.0 if here == home else begin - time - away)
         time = begin + spent
         late += max(0.0, time - field.deadlines[stop])
         tours.begins[stop], tours.ends[stop] = begin, time

@@ -55,7 +55,7 @@ class PortionRun:
 
     def _add(self, state: State, first: int, ready: Ready) -> None:
         pilot, material = self._pilot, self.material
-        need = material.seconds(first, first) + pilot.exit_seconds(material.last(first))
+        need = material.longest(first, first) + pilot.exit_longest(material.last(first))
         there = pilot.reach(state, material.approach(first), need, ready, material.task)
         if there is None:
             self._stuck = True
@@ -65,14 +65,14 @@ class PortionRun:
         self._sorties.append(_Sortie(first, last, turn, there))
 
     def _fits(self, state: State, first: int, last: int) -> bool:
-        seconds = self.material.seconds(first, last)
+        seconds = self.material.longest(first, last)
         return self._pilot.affords(state, seconds, self.material.last(last))
 
     def _turn(self, state: State, first: int, last: int) -> int:
         """Return the last portion after which the robot gets home; the one before the first if none."""
 
         def returns(portion: int) -> bool:
-            seconds = self.material.seconds(first, portion)
+            seconds = self.material.longest(first, portion)
             return self._pilot.affords_home(state, seconds, self.material.last(portion))
 
         return _largest(first, last, returns) if returns(first) else first - 1
@@ -131,17 +131,17 @@ class PortionRun:
 
     def _after(self, sortie: _Sortie, portion: int, *, final: bool) -> State:
         material, state = self.material, sortie.state
-        lead = state.lead + material.lead(sortie.first, portion)
+        seconds = material.bounds(sortie.first, portion)
+        done = state.later(seconds, 0.0, material.last(portion))
         if not self._record:
-            seconds = material.seconds(sortie.first, portion)
-            return state.later(seconds, 0.0, material.last(portion))._replace(lead=lead)
+            return done
         strokes = material.strokes(sortie.first, portion)
         for i, stroke in enumerate(strokes):
             state = self._pilot.hop(state, stroke, material.task)
             first = i == 0 and sortie.first == self.begin
             last = final and i == len(strokes) - 1
             state = self._pilot.serve(state, stroke, material.task, material.rule, first, last)
-        return state._replace(lead=lead)
+        return state._replace(used=done.used, lead=done.lead, early=done.early, late=done.late)
 
 
 def _largest(low: int, high: int, holds: Callable[[int], bool]) -> int:

@@ -6,12 +6,13 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import inf
+from typing import TypeVar
 
 from mmrs_core.planning.choices import carry_out
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.mixing import MixedFilling, mixes
 from mmrs_core.planning.sharing import Filling, ShareCandidate, Sharing, earliest, fillings
-from mmrs_core.planning.states import Ready, State
+from mmrs_core.planning.states import Bounds, Ready, State
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.turns import JobResult, States, TurnShare, in_turns, turn_of
 from mmrs_core.scene import Task
@@ -69,6 +70,8 @@ class Shortfall:
     left: int
 
 
+_Value = TypeVar("_Value")
+
 _ENDED_BY = " ended by "
 
 
@@ -93,6 +96,11 @@ def schedule(
     return _Scheduling(team, decisions, record).run(jobs)
 
 
+def _merged(known: Mapping[str, Mapping[str, _Value]], jobs: Iterable[str]) -> dict[str, _Value]:
+    """Return what is known, by robot, of several jobs."""
+    return {name: value for job in jobs for name, value in known[job].items()}
+
+
 class _Scheduling:
     def __init__(self, team: Team, decisions: Decisions, record: bool) -> None:
         self._team, self._decisions, self._record = team, decisions, record
@@ -103,7 +111,7 @@ class _Scheduling:
             for delay in (decisions.delays.get(name, 0.0),)
         }
         self._ends: dict[str, Mapping[str, float]] = {}
-        self._soonest: dict[str, Mapping[str, float]] = {}
+        self._bounds: dict[str, Mapping[str, Bounds]] = {}
         self._spans: dict[str, tuple[float, float]] = {}
         self._busy: set[str] = set()
 
@@ -125,14 +133,15 @@ class _Scheduling:
 
     def _do(self, job: Job) -> bool:
         if not job.tasks():
-            for known in (self._ends, self._soonest):
-                known[job.name] = {name: end for before in job.after for name, end in known[before].items()}
+            before = [*job.after]
+            self._ends[job.name] = _merged(self._ends, before)
+            self._bounds[job.name] = _merged(self._bounds, before)
             return True
         done = self._chosen_or_shared(job) if self._record else self._remembered(job)
         if done is None:
             return False
         self._states = {**self._states, **done.states}
-        self._ends[job.name], self._soonest[job.name] = done.ends, done.soonest
+        self._ends[job.name], self._bounds[job.name] = done.ends, done.bounds
         self._spans[job.name] = (done.begin, max(done.ends.values()))
         self._busy |= done.ends.keys()
         return True
@@ -149,7 +158,7 @@ class _Scheduling:
         elif concerned is self._team.pilots:
             concerned = self._team.able(job.name)
         states = tuple(self._states[name] for name in concerned)
-        before = tuple((*self._ends[name].items(), *self._soonest[name].items()) for name in job.after)
+        before = tuple((*self._ends[name].items(), *self._bounds[name].items()) for name in job.after)
         wanted = tuple(self._tasks[name].wanted for name in job.tasks())
         key = (job.name, self._decisions.groups.get(job.name), turns, wanted, before, *map(id, states))
         known = self._team.done.get(key)
@@ -172,9 +181,9 @@ class _Scheduling:
     def _at_once(self, sharing: Sharing) -> JobResult:
         after = {share.candidate.pilot.robot.name: share.run.state(share.end) for share in sharing.shares}
         ends = {name: state.time for name, state in after.items()}
-        soonest = {name: state.time - state.lead for name, state in after.items()}
+        bounds = {name: state.bounds for name, state in after.items()}
         begin = min(share.run.started() for share in sharing.shares)
-        return JobResult(after, begin, ends, soonest, sharing.back)
+        return JobResult(after, begin, ends, bounds, sharing.back)
 
     def _in_turns(self, sharing: Sharing) -> JobResult | None:
         parts = [
@@ -186,14 +195,14 @@ class _Scheduling:
     def _ready(self, job: Job, robot: str, earliest: float | None) -> Ready:
         """Return what a robot's share of a job waits for: every other robot's share of those before."""
         others = {
-            signal_name(before, name): (end, self._soonest[before][name])
+            signal_name(before, name): (end, self._bounds[before][name])
             for before in job.after
             for name, end in self._ends[before].items()
             if name != robot
         }
         time = max((end for end, _ in others.values()), default=0.0)
-        soonest = max((end for _, end in others.values()), default=0.0)
-        return Ready(time, tuple(others), earliest, soonest)
+        bounds = [each for _, each in others.values()]
+        return Ready(time, tuple(others), earliest, Bounds(*map(max, zip(Bounds(), *bounds, strict=True))))
 
     def _chosen(self, job: Job) -> JobResult | None:
         """Give a choice to the robot that is back first after its longest arm."""
@@ -217,8 +226,7 @@ class _Scheduling:
             return None
         begin = end.trail[1].begin if end.trail is not None else end.time
         back = end.time + pilot.end_seconds(end.at)
-        soonest = {name: end.time - end.lead}
-        return JobResult({**states, name: end}, begin, {name: end.time}, soonest, back)
+        return JobResult({**states, name: end}, begin, {name: end.time}, {name: end.bounds}, back)
 
     def _earliest(self, job: Job) -> float | None:
         times = [self._tasks[name].earliest for name in job.tasks()]

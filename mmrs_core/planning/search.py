@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice, product
-from math import ceil, inf, prod
+from itertools import islice, pairwise, permutations, product
+from math import ceil, factorial, inf, prod
 from random import Random
 from typing import TypeAlias
 
@@ -75,7 +75,17 @@ def find_decisions(
         idle += 1
         if isinstance(found, Shortfall) and cost == least:
             best, found = other, result
-    return _with_better_numbers(team, jobs, best, found)
+    return _with_better_order(team, jobs, *_with_better_numbers(team, jobs, best, found))
+
+
+def _with_better_order(
+    team: Team, jobs: Sequence[Job], best: Decisions, found: Schedule | Shortfall
+) -> tuple[Decisions, Schedule | Shortfall]:
+    """Return decisions with the best order of few jobs, by which sorties may become fuller."""
+    if factorial(len(jobs)) * _size(team, jobs) > _EFFORT:
+        return best, found
+    tried = ((each, schedule(team, jobs, each)) for each in _orders(team, jobs, best))
+    return min(((best, found), *tried), key=lambda pair: _slightly_rounded(cost_of(team, pair[1])))
 
 
 def _with_better_numbers(
@@ -135,16 +145,32 @@ def broken_times(team: Team, spans: Mapping[str, tuple[float, float]]) -> list[t
     return broken
 
 
+def _slightly_rounded(cost: Cost) -> Cost:
+    return (round(cost[0], 6), round(cost[1], 4), round(cost[2], 4))
+
+
 def _slightly_less(cost: Cost) -> Cost:
     return (cost[0] - 1e-9, cost[1], cost[2]) if 0 < cost[0] < inf else (cost[0], cost[1] - 1e-6, cost[2])
 
 
 def _first_order(team: Team, jobs: Sequence[Job]) -> tuple[str, ...]:
     tails = _tails(team, jobs)
+    ranks = _ranks(team, jobs)
+    return tuple(sorted(ranks, key=lambda name: (-ranks[name], -tails[name])))
+
+
+def _ranks(team: Team, jobs: Sequence[Job]) -> dict[str, int]:
+    """Return the priority of each job."""
     priority = {task.name: task.priority for task in team.scene.tasks}
-    ranked = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
-    names = [job.name for job in jobs]
-    return tuple(sorted(names, key=lambda name: (-ranked[name], -tails[name])))
+    return {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
+
+
+def _orders(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Iterator[Decisions]:
+    """Yield decisions with all other orders in which what has priority comes first."""
+    ranks = _ranks(team, jobs)
+    for order in islice(permutations(decisions.order), 1, None):
+        if all(ranks[one] >= ranks[two] for one, two in pairwise(order)):
+            yield replace(decisions, order=order)
 
 
 def _tails(team: Team, jobs: Sequence[Job]) -> Mapping[str, float]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from math import dist, inf
 
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.charges import most_used
 from mmrs_core.planning.delaying import delayed
 from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
 from mmrs_core.planning.schedule import Decisions
@@ -26,10 +26,8 @@ from mmrs_core.scene import (
     Position,
     Recharge,
     Recover,
-    RobotPlan,
     Scene,
     Serve,
-    Signal,
     Step,
     Transit,
     distinct_works,
@@ -273,30 +271,12 @@ class Traffic:
     def overdrawn(self, team: Team, before: Plan) -> list[str]:
         """Return the robots that wait longer than before and then take more than a charge allows."""
         old = {each.robot: each.steps for each in before.robots}
+        used = most_used(self.plan, team.pilots)
         return [
             each.robot
             for each in self.plan.robots
-            if each.steps != old[each.robot]
-            and self._used(each, launches=team.pilots[each.robot].kinematics.launches)
-            > team.pilots[each.robot].limit + 1e-6
+            if each.steps != old[each.robot] and used[each.robot] > team.pilots[each.robot].limit + 1e-6
         ]
-
-    def _used(self, plan: RobotPlan, *, launches: bool) -> float:
-        """Return the most seconds that a robot takes on one charge; see `Pilot`."""
-        most = used = 0.0
-        away = not launches
-        stops = self._timelines[plan.robot].stops
-        for (stop, after), step in zip(pairwise(stops), plan.steps, strict=True):
-            if isinstance(step, Recharge):
-                used = 0.0
-            elif isinstance(step, Await):
-                longest = after.late - max(0.0, stop.early) if step.signals else step.end - step.begin
-                used += longest if away else 0.0
-            else:
-                away = not launches or not isinstance(step, Recover | Signal)
-                used += step.end - step.begin
-            most = max(most, used)
-        return most
 
     def later_starts(self) -> dict[str, float]:
         """Return when robots must leave home at the earliest to keep apart; empty if that does not help.

@@ -1,8 +1,9 @@
 """A robot's progress through its plan: a state that grows step by step, within what its batteries allow.
 
 Time on one charge counts as the verifier counts it: for a robot that launches, from launch to recovery,
-waits aloft included; for all others from the mission's start or the last recharge on. Energy is power
-against the wind or current times time.
+waits aloft included; for all others from the mission's start or the last recharge on. Each leg, action and
+stay counts with the most that it may take, a wait from the earliest time at which the robot may begin it
+until the latest at which it may be over. Energy is power against the wind or current times time.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from mmrs_core.planning.states import ApproachRoute, Ready, State
 from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
 from mmrs_core.planning.travel import Route, Travel
 from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Stroke, Transit
+from mmrs_core.scene.timing import MoveSeconds, noticing
 
 _SAME = 1e-9
 
@@ -24,33 +26,38 @@ class Pilot:
     """Moves one robot's state on; each action is a short function of the state.
 
     Attributes:
-        paces: by (soonest, parts in one go): when each begins and ends, see `paced`.
+        paces: by (bound, parts in one go): when each begins and ends, see `paced`.
+        limit: seconds that a charge allows.
+        fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
     """
 
-    def __init__(self, travel: Travel, *, homebound: bool = True, answering: float = 0.0) -> None:
+    def __init__(self, travel: Travel, *, homebound: bool = True) -> None:
         """Make it.
 
         Args:
             travel: routes of the robot.
             homebound: whether it always keeps enough to go home, even if it may stay where it ends.
-            answering: share by which answers to its actions may delay all that it does, at most.
         """
         self.travel = travel
         self.robot, self.kinematics = travel.robot, travel.kinematics
         self.homebound = homebound or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
-        # The check counts with moves that take longer than expected.
-        longer = (1.0 + self.kinematics.timing.spread) * (1.0 + answering)
-        self.limit = min(self.kinematics.endurance, by_energy) / longer
-        self.paces: dict[tuple[bool, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
-        self._exits: dict[Position, float] = {}
-        self._descents: dict[Position, float] = {}
-        self._homes: dict[Position, float] = {}
+        self.limit = min(self.kinematics.endurance, by_energy)
+        self._noticing = noticing(self.kinematics.timing)
+        launches = self.kinematics.launches
+        self.fresh = 0.0 if launches else self._noticing
+        self.stopping = 0.0 if launches else self.kinematics.timing.reporting
+        self.paces: dict[tuple[int, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
+        self._exits: dict[Position, Route | None] = {}
+        self._descents: dict[Position, Route | None] = {}
+        self._homes: dict[Position, Route | None] = {}
 
     def start(self, delay: float = 0.0) -> State:
         """Return the state in which the mission begins, after a delay at home."""
-        return self.stay_until(State(0.0, self.robot.home), delay, "")
+        since = None if self.kinematics.launches else 0.0
+        start = State(0.0, self.robot.home, used=self.fresh, since=since, late=self._noticing)
+        return self.stay_until(start, delay, "")
 
     def stay_until(self, state: State, time: float, task: str) -> State:
         """Return the state after staying where the robot is until a time, if that is still to come."""
@@ -58,17 +65,22 @@ class Pilot:
 
     def exit_seconds(self, position: Position) -> float:
         """Return the seconds that ending the last sortie from a place takes; inf where it cannot end."""
-        return _remembered(self._exits, position, self.exit_route)
+        return _seconds(_remembered(self._exits, position, self.exit_route))
+
+    def exit_longest(self, position: Position) -> float:
+        """Return how long that takes at most; inf where it cannot end."""
+        return _longest(_remembered(self._exits, position, self.exit_route)) + self.stopping
 
     def end_seconds(self, position: Position) -> float:
         """Return the seconds from a place to the robot's end: down where it is, if it need not return."""
         if not self.homebound or self.robot.return_home:
             return self.exit_seconds(position)
-        return min(self.exit_seconds(position), _remembered(self._descents, position, self.travel.come_down))
+        descent = _remembered(self._descents, position, self.travel.come_down)
+        return min(self.exit_seconds(position), _seconds(descent))
 
-    def home_seconds(self, position: Position) -> float:
-        """Return the seconds that the route home from a place takes; inf where there is none."""
-        return _remembered(self._homes, position, self.travel.go_home)
+    def home_longest(self, position: Position) -> float:
+        """Return the seconds that the route home from a place takes at most; inf where there is none."""
+        return _longest(_remembered(self._homes, position, self.travel.go_home))
 
     def exit_route(self, position: Position) -> Route:
         """Return the route on which the last sortie ends from a place: home, or down where that is allowed.
@@ -84,12 +96,12 @@ class Pilot:
             return self.travel.go_home(position)
 
     def affords(self, state: State, seconds: float, end: Position) -> bool:
-        """Return whether `seconds` that end at a place leave enough to end the last sortie there."""
-        return state.used + seconds + self.exit_seconds(end) <= self.limit + _SAME
+        """Return whether `seconds` at most that end at a place leave enough to end the last sortie there."""
+        return state.used + seconds + self.exit_longest(end) <= self.limit + _SAME
 
     def affords_home(self, state: State, seconds: float, end: Position) -> bool:
-        """Return whether `seconds` that end at a place leave enough to return home."""
-        return state.used + seconds + self.home_seconds(end) <= self.limit + _SAME
+        """Return whether `seconds` at most that end at a place leave enough to return home."""
+        return state.used + seconds + self.home_longest(end) <= self.limit + _SAME
 
     def reach(
         self, state: State, approach: ApproachRoute, need: float, ready: Ready, task: str
@@ -102,7 +114,7 @@ class Pilot:
         Args:
             state: where it is.
             approach: how it comes there.
-            need: seconds it must then have left, the end of the sortie included.
+            need: seconds it must then have left, the end of the sortie included, at most.
             ready: what the work waits for.
             task: that it is for.
         """
@@ -119,7 +131,7 @@ class Pilot:
 
     def rested(self, state: State, task: str) -> State | None:
         """Return the state at home with full batteries; None if the robot is fresh or cannot."""
-        if self.kinematics.recharge is None or state.used == 0.0:
+        if self.kinematics.recharge is None or state.used <= self.fresh:
             return None
         try:
             home = self.home(state, task)
@@ -157,15 +169,21 @@ class Pilot:
             return state
         end = max(state.time, ready.time, clock or 0.0)
         step = Await(state.time, end, task, ready.signals, clock)
-        waited = end - state.time
-        longest = max(waited, ready.time - soonest) if ready.signals else waited
-        soonest_end = max(soonest if clock is None else clock - state.lead, ready.soonest)
-        counts = state.away or not self.kinematics.launches
+        held = MoveSeconds.exactly(0.0)
+        if clock is not None:
+            stay = max(0.0, clock - state.time)
+            held = MoveSeconds(stay, stay, stay + self._noticing)
+        early = state.early + held.shortest
+        used = state.used
+        if state.since is not None:
+            used = waited(used + held.longest, state.before, state.since, early, ready.bounds.late)
         return state._replace(
             time=end,
-            used=state.used + (longest if counts else 0.0),
-            lead=end - soonest_end,
-            busy=state.busy + (waited if state.away else 0.0),
+            used=used,
+            lead=end - max(soonest if clock is None else clock - state.lead, ready.bounds.soonest),
+            early=max(early, ready.bounds.early),
+            late=max(state.late + held.longest, ready.bounds.late),
+            busy=state.busy + (end - state.time if state.away else 0.0),
             trail=(state.trail, step),
         )
 
@@ -182,6 +200,8 @@ class Pilot:
     def _leave(self, state: State, goal: Position, task: str, speed: float | None) -> State:
         route = self.travel.at_speed(self.travel.leave(goal), speed)
         trail, time = state.trail, state.time
+        if state.since is None:
+            state = state._replace(before=state.used, since=state.early)
         if route.height is not None:
             climb = route.height - self.robot.home[2]
             up = time + self.kinematics.launching(climb)
@@ -204,13 +224,12 @@ class Pilot:
             return state
         return self._follow(state, self.travel.hop(state.at, goal), task, self._approach_speed(stroke))
 
-    def hop_seconds(self, here: Position, stroke: Stroke, *, soonest: bool = False) -> float:
-        """Return how long that takes at most, or at least."""
+    def hop_seconds(self, here: Position, stroke: Stroke) -> MoveSeconds:
+        """Return how long that takes."""
         goal = stroke.points[0]
         if here == goal:
-            return 0.0
-        route = self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke))
-        return route.seconds - route.lead if soonest else route.seconds
+            return MoveSeconds.exactly(0.0)
+        return self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke)).bounds
 
     def _approach_speed(self, stroke: Stroke) -> float | None:
         return approach_speed(stroke, self.kinematics)
@@ -221,7 +240,7 @@ class Pilot:
         speed = commanded_speed(stroke, self.kinematics)
         end = state.time + seconds
         step = Serve(state.time, end, task, stroke, speed, rule, first, last)
-        done = state.later(seconds, length_of(stroke.points), stroke.points[-1])
+        done = state.later(MoveSeconds.exactly(seconds), length_of(stroke.points), stroke.points[-1])
         return done._replace(trail=(state.trail, step))
 
     def home(self, state: State, task: str = "") -> State:
@@ -252,7 +271,7 @@ class Pilot:
             route = self.travel.come_down(state.at)
         except UnreachableError:
             return None
-        return route if state.used + route.seconds <= self.limit + _SAME else None
+        return route if state.used + route.longest + self.stopping <= self.limit + _SAME else None
 
     def _ended(self, state: State, route: Route, task: str) -> State:
         end, trail = state.time + route.seconds, state.trail
@@ -267,22 +286,52 @@ class Pilot:
             trail = (trail, Transit(state.time, end - down, task, route.points))
         if self.kinematics.launches:
             trail = (trail, Recover(end - down, end, task, last, at[2]))
-        return state.after(route, at, trail)._replace(away=False)
+        ended = state.after(route, at, trail)._replace(away=False)
+        return ended._replace(since=None) if self.kinematics.launches else ended
 
     def _recharged(self, state: State, task: str) -> State:
-        end = state.time + (self.kinematics.recharge or 0.0)
-        return state._replace(time=end, used=0.0, trail=(state.trail, Recharge(state.time, end, task)))
+        seconds = self.kinematics.charging_time(self.kinematics.recharge or 0.0)
+        end, early = state.time + seconds.expected, state.early + seconds.shortest
+        return state._replace(
+            time=end,
+            used=0.0,
+            before=0.0,
+            since=None if self.kinematics.launches else early,
+            early=early,
+            late=state.late + seconds.longest,
+            trail=(state.trail, Recharge(state.time, end, task)),
+        )
+
+
+def waited(used: float, before: float, since: float, early: float, release: float) -> float:
+    """Return the seconds used of a charge at most after a wait: the smaller of two bounds.
+
+    The robot waits no longer than from when it may begin to until the release; and what it is in since its
+    launch, or since it was charged, takes no longer than from the begin of that to the release.
+
+    Args:
+        used: by the begin of the wait, at most. before: by the launch.
+        since: seconds of the launch, at the earliest. early: of the wait. release: at the latest.
+    """
+    whole = max(used, before + max(0.0, release - since))
+    return min(used + max(0.0, release - early), whole)
 
 
 def _remembered(
-    known: dict[Position, float], position: Position, route_from: Callable[[Position], Route]
-) -> float:
-    """Return the seconds of the route from a place; inf where there is none."""
-    seconds = known.get(position)
-    if seconds is None:
+    known: dict[Position, Route | None], position: Position, route_from: Callable[[Position], Route]
+) -> Route | None:
+    """Return the route from a place; None where there is none."""
+    if position not in known:
         try:
-            seconds = route_from(position).seconds
+            known[position] = route_from(position)
         except UnreachableError:
-            seconds = inf
-        known[position] = seconds
-    return seconds
+            known[position] = None
+    return known[position]
+
+
+def _seconds(route: Route | None) -> float:
+    return inf if route is None else route.seconds
+
+
+def _longest(route: Route | None) -> float:
+    return inf if route is None else route.longest

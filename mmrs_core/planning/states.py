@@ -8,6 +8,7 @@ from typing import NamedTuple, TypeAlias
 
 from mmrs_core.planning.travel import Route
 from mmrs_core.scene import Position, Step
+from mmrs_core.scene.timing import MoveSeconds
 
 Trail: TypeAlias = "tuple[Trail, Step] | None"
 
@@ -19,8 +20,10 @@ class State(NamedTuple):
         time: seconds after the mission's start.
         at: where it is.
         away: whether it has left home since it was last there to stay.
-        used: seconds on this charge.
+        used: seconds on this charge at most; before: of them before it last launched.
+        since: when it launched, or began this charge, at the earliest; None: it stands on the ground.
         lead: seconds by which it may be here earlier.
+        early, late: when it may be here at the earliest, also if charging ends at once, and at the latest.
         length: metres travelled. busy: seconds away from home. sorties: times it left home.
         trail: its steps so far, last one first.
     """
@@ -29,7 +32,11 @@ class State(NamedTuple):
     at: Position
     away: bool = False
     used: float = 0.0
+    before: float = 0.0
+    since: float | None = None
     lead: float = 0.0
+    early: float = 0.0
+    late: float = 0.0
     length: float = 0.0
     busy: float = 0.0
     sorties: int = 0
@@ -37,18 +44,25 @@ class State(NamedTuple):
 
     def after(self, route: Route, at: Position, trail: Trail) -> State:
         """Return the state at the end of a route that ends there, with the steps of it."""
-        there = self.later(route.seconds, route.length, at)
-        return there._replace(away=True, lead=self.lead + route.lead, trail=trail)
+        return self.later(route.bounds, route.length, at)._replace(away=True, trail=trail)
 
-    def later(self, seconds: float, length: float, at: Position) -> State:
-        """Return the state `seconds` and `length` metres later, without steps."""
+    def later(self, seconds: MoveSeconds, length: float, at: Position) -> State:
+        """Return the state so many seconds and `length` metres later, without steps."""
         return self._replace(
-            time=self.time + seconds,
+            time=self.time + seconds.expected,
             at=at,
-            used=self.used + seconds,
+            used=self.used + seconds.longest,
+            lead=self.lead + seconds.expected - seconds.shortest,
+            early=self.early + seconds.shortest,
+            late=self.late + seconds.longest,
             length=self.length + length,
-            busy=self.busy + seconds,
+            busy=self.busy + seconds.expected,
         )
+
+    @property
+    def bounds(self) -> Bounds:
+        """Return when it may be here."""
+        return Bounds(self.time - self.lead, self.early, self.late)
 
     def steps(self) -> tuple[Step, ...]:
         """Return the steps so far, in order."""
@@ -61,12 +75,28 @@ def _backwards(trail: Trail) -> Iterator[Step]:
         yield step
 
 
+class Bounds(NamedTuple):
+    """When something may be, seconds.
+
+    Attributes:
+        soonest: at the earliest, if charging takes as long as declared.
+        early: likewise, if it ends at once. late: at the latest.
+    """
+
+    soonest: float = 0.0
+    early: float = 0.0
+    late: float = 0.0
+
+
+_AT_ONCE = Bounds()
+
+
 @dataclass(frozen=True, slots=True)
 class Ready:
     """What must have happened before a share of work may begin.
 
     Attributes:
-        time: seconds, by when the signals will have been given; soonest: when that may be.
+        time: seconds, by when the signals will have been given; bounds: of that.
         signals: that it waits for.
         earliest: seconds before which it may not begin by the clock; None: none.
     """
@@ -74,7 +104,7 @@ class Ready:
     time: float = 0.0
     signals: tuple[str, ...] = ()
     earliest: float | None = None
-    soonest: float = 0.0
+    bounds: Bounds = _AT_ONCE
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
 
 from mmrs_core.scene import ActionAt, Kinematics, Position, Robot, RobotType, Stroke
-from mmrs_core.scene.timing import acting
+from mmrs_core.scene.timing import noticing
 
 _SAME = 1e-9
 
@@ -91,6 +91,26 @@ def uncertain_seconds(stroke: Stroke, kinematics: Kinematics) -> float:
     return turning + 2.0 * (stroke.object_tolerance or 0.0) / commanded_speed(stroke, kinematics)
 
 
+def longest_end(stroke: Stroke, kinematics: Kinematics) -> float:
+    """Return how long what a robot does at the last point of a stroke takes at most.
+
+    That is to turn, to hold, and to search there and back; what it does on its way there is not counted.
+    """
+    stays = len(stroke.points) == 1 and stroke.object is None
+    seconds = stroke.hold + (noticing(kinematics.timing) if stroke.hold > 0.0 or stays else 0.0)
+    if stroke.look is not None and (
+        stroke.hold > 0.0 or len(stroke.points) == 1 or stroke.object is not None
+    ):
+        seconds += kinematics.turning().longest if kinematics.turn_rate > 0 else inf
+    if stroke.object is not None:
+        slowest = min(commanded_speed(stroke, kinematics), kinematics.climb, kinematics.descent)
+        away = stroke.object_tolerance or 0.0
+        seconds += kinematics.timing.reporting + (2.0 * away / slowest if slowest > 0.0 else inf) * (
+            away > 0.0
+        )
+    return seconds
+
+
 def _longest_turn(kinematics: Kinematics) -> float:
     """Return how long a turn takes at most, less what the planner adds to everything."""
     return (
@@ -104,25 +124,6 @@ def action_seconds(robot_type: RobotType, action: ActionAt) -> float:
     named = [devices[action.device]] if action.device in devices else list(devices.values())
     found = [device.actions[action.action] for device in named if action.action in device.actions]
     return found[0].duration if found else 0.0
-
-
-def answering_share(strokes: Sequence[Stroke], robot: Robot) -> float:
-    """Return by which share answers to actions delay strokes done in order, beyond the spread of all."""
-    if robot.kinematics is None or not strokes:
-        return 0.0
-    timing = robot.kinematics.timing
-    spread, later, seconds = 1.0 + timing.spread, 0.0, 0.0
-    here = strokes[0].points[0]
-    for stroke in strokes:
-        rates = robot.kinematics.rates(stroke.speed)
-        for each in (action_seconds(robot.type, action) for action in stroke.commands):
-            later += max(0.0, acting(each, timing).longest - spread * each)
-            seconds += each
-        begin, half, end = (stroke.points[index] for index in (0, len(stroke.points) // 2, -1))
-        for place in (begin, end) if dist(begin, end) > NEAR else (begin, half, end):
-            seconds += rates.from_stop_to_stop(here, place)
-            here = place
-    return later / (spread * seconds) if seconds > 0.0 else 0.0
 
 
 def missing_action(robot_type: RobotType, action: ActionAt) -> str | None:

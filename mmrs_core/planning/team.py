@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.corners import Corners
 from mmrs_core.planning.jobs import is_control
 from mmrs_core.planning.materials import (
     Layout,
@@ -22,10 +23,10 @@ from mmrs_core.planning.mixing import Mixture, WorkGroup
 from mmrs_core.planning.remainders import comparable
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import State
-from mmrs_core.planning.strokes import answering_share, length_of
+from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
 from mmrs_core.planning.turns import JobResult
-from mmrs_core.scene import Robot, Scene, SharedWorks, Task, Work, distinct_works
+from mmrs_core.scene import Robot, Scene, SharedWorks, Task, Work
 
 _PORTIONS_PER_ROBOT = 60
 """Portions of a robot's part of the whole mission that are small enough to balance it."""
@@ -81,14 +82,18 @@ class Team:
         self.spaces = spaces or Spaces(scene, from_homes=from_homes)
         self.homebound = homebound_of(scene) if homebound is None else homebound
         aloft = altitudes or {}
-        fluid, answering = scene.minimum_separation is None, _answering_share(scene)
+        fluid = scene.minimum_separation is None
+        uploads = fluid and not scene.frame.is_local
         self.pilots: Mapping[str, Pilot] = {
             robot.name: Pilot(
                 Travel(
-                    robot, self.spaces.of(robot), aloft.get(robot.name, scene.transit_altitude), fluid=fluid
+                    robot,
+                    self.spaces.of(robot),
+                    aloft.get(robot.name, scene.transit_altitude),
+                    fluid=fluid,
+                    uploading=Corners(robot, scene.kept_from(robot)) if uploads else None,
                 ),
                 homebound=robot.name in self.homebound,
-                answering=answering,
             )
             for robot in scene.robots
         }
@@ -396,10 +401,3 @@ def _seconds_of_all(scene: Scene) -> float:
                 sum(length_of(each.points) for each in scene.works[task.name, robot].strokes) / cruises[robot]
             )
     return total
-
-
-def _answering_share(scene: Scene) -> float:
-    """Return the largest share by which answers to its actions may delay a work."""
-    robots = {id(robot.type): robot for robot in scene.robots}.values()
-    works = distinct_works(scene.works)
-    return max((answering_share(work.strokes, robot) for work in works for robot in robots), default=0.0)

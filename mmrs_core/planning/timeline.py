@@ -17,7 +17,7 @@ from math import dist, hypot, inf
 from typing import TypeAlias
 
 from mmrs_core.errors import InternalError
-from mmrs_core.planning.strokes import NEAR, action_seconds, stops_of, uncertain_seconds
+from mmrs_core.planning.strokes import NEAR, action_seconds, longest_end, stops_of, uncertain_seconds
 from mmrs_core.planning.travel import kinematics_of
 from mmrs_core.scene import (
     Await,
@@ -83,11 +83,13 @@ class Timeline:
         rides: in order; whatever it does last, it then stays where it is.
         stops: where it stands when each step begins, and after the last one.
         known: for each step, by other robot: the step that this one has begun at least by then.
+        moments: seconds at which each step begins, and the last one ends, at the earliest and at the latest.
     """
 
     rides: tuple[Ride, ...]
     stops: tuple[Ride, ...]
     known: tuple[Mapping[str, int], ...]
+    moments: tuple[tuple[float, float], ...]
 
 
 def timelines_of(plan: Plan, robots: Mapping[str, Robot], *, hasty: bool = False) -> dict[str, Timeline]:
@@ -123,7 +125,8 @@ class _Walk:
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet.
-        stops, known: see `Timeline`.
+        stops, known, moments: see `Timeline`.
+        merges: whether it comes from the arms of a choice, and must stop before it gives a signal.
     """
 
     robot: Robot
@@ -136,6 +139,8 @@ class _Walk:
     radius: float = 0.0
     gone: bool = False
     stops: list[Ride] = field(default_factory=list)
+    moments: list[tuple[float, float]] = field(default_factory=list)
+    merges: bool = False
     known: list[Mapping[str, int]] = field(default_factory=lambda: [{}])
 
     def __post_init__(self) -> None:
@@ -146,20 +151,23 @@ class _Walk:
 
     def begin(self, step: Step, given: dict[str, _Given]) -> None:
         self.stops.append(self._standing(len(self.stops)))
+        self.moments.append((self.now, self.by))
         self.add(step, given)
         self._learn(step.signals if isinstance(step, Await) else (), given)
 
     def ended(self) -> Timeline:
         self.stops.append(self._standing(len(self.stops)))
+        self.moments.append((self.now, self.by))
         self.by = inf
         self._stay(0.0)
-        return Timeline(tuple(self.rides), tuple(self.stops), tuple(self.known))
+        return Timeline(tuple(self.rides), tuple(self.stops), tuple(self.known), tuple(self.moments))
 
     def add(self, step: Step, given: dict[str, _Given]) -> None:
         if isinstance(step, Await):
             self._await(step, given)
         elif isinstance(step, Signal):
-            self._pause()
+            if self.merges:
+                self._pause()
             place = len(self.stops) - 1
             given[step.signal] = (self.now, self.by, {**self.known[place], self.robot.name: place})
         elif isinstance(step, Branch):
@@ -211,7 +219,7 @@ class _Walk:
         for self.now, self.here, self.radius in ends:
             self.by = latest
             self._stay(0.0)
-        self.now, self.here = min(now for now, _, _ in ends), step.exit
+        self.now, self.here, self.merges = min(now for now, _, _ in ends), step.exit, True
 
     def _transit(self, step: Transit) -> None:
         rates = self.kinematics.rates(step.speed)
@@ -235,9 +243,8 @@ class _Walk:
                 self._stay(found.shortest, found.longest)
         left = step.end - step.begin - planned
         uncertain = uncertain_seconds(step.stroke, self.kinematics)
-        holds = step.stroke.hold > 0.0 or len(step.stroke.points) == 1 or step.stroke.object is not None
-        late = timing.spread * uncertain + (noticing(timing) if holds else 0.0)
-        self._stay(max(0.0, left - uncertain), max(0.0, left) + late)
+        self._stay(max(0.0, left - uncertain), longest_end(step.stroke, self.kinematics))
+        self.merges = False
 
     def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
         soonest, latest = rates.soonest(), rates.latest()

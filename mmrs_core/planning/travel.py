@@ -9,10 +9,11 @@ from math import dist, inf
 
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
+from mmrs_core.planning.corners import Corners
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.scene import Area, AreaUse, Kinematics, Position, Robot, Scene
-from mmrs_core.scene.timing import Rates, bounded
+from mmrs_core.scene.timing import MoveSeconds, Rates, bounded
 
 _SPECK = 0.01
 """Metres: half the side of the square that stands for a home."""
@@ -30,6 +31,7 @@ class Route:
         length: metres, likewise.
         height: to which it launches before, or from which it comes down after; None: neither.
         lead: seconds by which it may be quicker where the robot does not stop at corners.
+        longest: seconds of the whole route at most.
     """
 
     points: tuple[Position, ...]
@@ -37,6 +39,12 @@ class Route:
     length: float
     height: float | None = None
     lead: float = 0.0
+    longest: float = 0.0
+
+    @property
+    def bounds(self) -> MoveSeconds:
+        """Return how long it takes."""
+        return MoveSeconds(self.seconds - self.lead, self.seconds, self.longest)
 
 
 class Spaces:
@@ -87,7 +95,13 @@ class Travel:
     """Ways of one robot; remembered, as plans ask for the same ones again and again."""
 
     def __init__(
-        self, robot: Robot, space: Space, transit_altitude: float | None, *, fluid: bool = True
+        self,
+        robot: Robot,
+        space: Space,
+        transit_altitude: float | None,
+        *,
+        fluid: bool = True,
+        uploading: Corners | None = None,
     ) -> None:
         """Make it for a robot.
 
@@ -96,16 +110,19 @@ class Travel:
             space: its space.
             transit_altitude: height at which it goes between home and tasks, where it may and can.
             fluid: whether it may pass without a stop where nothing is done.
+            uploading: corners that it passes on missions which may be uploaded; None: none are.
         """
         self.robot, self.space, self.fluid = robot, space, fluid
         self.kinematics = kinematics_of(robot)
+        self.uploading = None if self.kinematics.mission is None else uploading
         aloft = transit_altitude if self.kinematics.launches else None
         self._altitude = None if aloft is None else self._within(aloft)
         self._leaving: dict[Position, Route | str] = {}
         self._returning: dict[Position, Route | str] = {}
         self._between: dict[tuple[Position, Position], Route | str] = {}
         self._hops: dict[tuple[Position, Position], Route] = {}
-        self._soonest: dict[float, Rates] = {}
+        self._bounds: dict[float | None, tuple[Rates, Rates, Rates]] = {}
+        self._uploaded: dict[float | None, Rates] = {}
 
     def _within(self, height: float) -> float:
         lowest = max(self.kinematics.floor, self.robot.home[2])
@@ -115,6 +132,38 @@ class Travel:
     def straight(self) -> bool:
         """Return whether all its routes are straight: nothing is in the way, and no altitude is wanted."""
         return self.space.empty and self._altitude is None
+
+    def bounds(self, speed: float | None = None) -> tuple[Rates, Rates, Rates]:
+        """Return how fast it goes along legs: as quickly as it may, as expected, and as slowly.
+
+        Args:
+            speed: commanded, metres per second; None: its cruise.
+        """
+        if speed not in self._bounds:
+            rates = self.kinematics.rates(speed)
+            self._bounds[speed] = rates.soonest(), rates, rates.latest()
+        return self._bounds[speed]
+
+    def uploaded(self, speed: float | None = None) -> Rates | None:
+        """Return how slowly it may go along legs of a mission; None: none is uploaded."""
+        if self.uploading is None:
+            return None
+        if speed not in self._uploaded:
+            self._uploaded[speed] = self.kinematics.in_mission().rates(speed).latest()
+        return self._uploaded[speed]
+
+    def upload_seconds(self, legs: int) -> float:
+        """Return how much longer some legs may take as parts of a mission, whose end is noticed late."""
+        uploaded, late = self.uploaded(), (1.0 + self.kinematics.timing.spread) * self.kinematics.noticing
+        if uploaded is None:
+            return 0.0
+        lengths = [(0.0, 0.0, 0.0), *((2.0**each, 0.0, 0.0) for each in range(12))]
+        slowest = self.bounds()[2]
+        more = (
+            uploaded.from_stop_to_stop(lengths[0], each) - slowest.from_stop_to_stop(lengths[0], each)
+            for each in lengths[1:]
+        )
+        return legs * max(0.0, *more) + late
 
     def leave(self, goal: Position) -> Route:
         """Return the route from home to a place.
@@ -161,10 +210,11 @@ class Travel:
         """Return the same route, its route gone at a commanded speed; None: at the robot's cruise."""
         if speed is None:
             return route
-        rates = self.kinematics.rates(speed)
-        seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(route.points))
-        whole = route.seconds - self.space.seconds(route.points) + seconds
-        return replace(route, seconds=whole, lead=self._lead(route.points, rates))
+        before, now = self._gone(route.points), self._gone(route.points, speed)
+        shortest, expected, longest = (
+            whole - a + b for whole, a, b in zip(route.bounds, before, now, strict=True)
+        )
+        return replace(route, seconds=expected, lead=expected - shortest, longest=longest)
 
     def come_down(self, start: Position) -> Route:
         """Return the route down to the ground where the robot is; for robots that need not return.
@@ -179,23 +229,41 @@ class Travel:
         below = self.space.blockers(column)
         if below:
             raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
-        seconds = self.kinematics.landing(start[2] - ground)
-        return Route((start,), seconds, length_of(column), ground, self._spread(seconds))
+        down = self._upright(self.kinematics.landing(start[2] - ground))
+        return self._route((start,), down, length_of(column), ground)
 
-    def _timed(self, route: tuple[Position, ...]) -> Route:
-        lead = self._lead(route, self.space.rates)
-        return Route(route, self.space.seconds(route), length_of(route), lead=lead)
+    def _timed(self, points: tuple[Position, ...]) -> Route:
+        return self._route(points, self._gone(points), length_of(points))
 
-    def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
-        if rates.cruise not in self._soonest:
-            self._soonest[rates.cruise] = rates.soonest()
-        soonest = self._soonest[rates.cruise]
+    def _route(
+        self, points: tuple[Position, ...], seconds: MoveSeconds, length: float, height: float | None = None
+    ) -> Route:
+        shortest, expected, longest = seconds
+        return Route(points, expected, length, height, expected - shortest, longest)
+
+    def _gone(self, points: tuple[Position, ...], speed: float | None = None) -> MoveSeconds:
+        """Return how long it takes from the first of some points to the last."""
+        soonest, rates, latest = self.bounds(speed)
         quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop
-        return sum(rates.from_stop_to_stop(*leg) - quickest(*leg) for leg in pairwise(route))
+        legs = list(pairwise(points))
+        uploaded = self.uploaded(speed) if len(legs) > 1 and self.kinematics.turning_radius > 0.0 else None
+        if uploaded is not None:
+            most = sum(max(latest.from_stop_to_stop(*leg), uploaded.from_stop_to_stop(*leg)) for leg in legs)
+        else:
+            most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
+        return MoveSeconds(
+            sum(quickest(*leg) for leg in legs),
+            sum(rates.from_stop_to_stop(*leg) for leg in legs),
+            most,
+        )
 
-    def _spread(self, seconds: float) -> float:
-        """Return by how much quicker than expected what takes so long may be."""
-        return seconds - bounded(seconds, self.kinematics.timing).shortest
+    def _upright(self, seconds: float, route: Route | None = None) -> MoveSeconds:
+        """Return how long launching or landing takes, and a route before or after that."""
+        upright = bounded(seconds, self.kinematics.timing)
+        if route is None:
+            return upright
+        shortest, expected, longest = (a + b for a, b in zip(route.bounds, upright, strict=True))
+        return MoveSeconds(shortest, expected, longest)
 
     def _outward(self, goal: Position) -> Route | str:
         if not self.kinematics.launches:
@@ -208,9 +276,8 @@ class Travel:
                 best = best or route
                 continue
             climb = height - self.robot.home[2]
-            up = self.kinematics.launching(climb)
-            lead = route.lead + self._spread(up)
-            return Route(route.points, up + route.seconds, route.length + climb, height, lead)
+            seconds = self._upright(self.kinematics.launching(climb), route)
+            return self._route(route.points, seconds, route.length + climb, height)
         return best
 
     def _inward(self, start: Position) -> Route | str:
@@ -224,9 +291,8 @@ class Travel:
                 best = best or route
                 continue
             drop = height - self.robot.home[2]
-            down = self.kinematics.landing(drop)
-            lead = route.lead + self._spread(down)
-            return Route(route.points, route.seconds + down, route.length + drop, height, lead)
+            seconds = self._upright(self.kinematics.landing(drop), route)
+            return self._route(route.points, seconds, route.length + drop, height)
         return best
 
     def _launch_heights(self, other: Position) -> list[float]:

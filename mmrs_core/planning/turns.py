@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.states import Ready, State
+from mmrs_core.planning.states import Bounds, Ready, State
 
 _BETWEEN = 1.0
 """Seconds from one robot's coming home to the next one's leaving: times follow from rounded places."""
@@ -34,15 +34,14 @@ class JobResult:
 
     Attributes:
         states: after it, of the robots that it moves at least.
-        begin: seconds at which it began; ends: by robot that has a share, when that ended; soonest: when
-            that may have been at the earliest.
+        begin: seconds at which it began; ends: by robot that has a share, when that ended; bounds: of that.
         back: when the last of these is back, seconds.
     """
 
     states: States
     begin: float
     ends: Mapping[str, float]
-    soonest: Mapping[str, float]
+    bounds: Mapping[str, Bounds]
     back: float
 
 
@@ -74,7 +73,7 @@ def in_turns(
     parts: Sequence[TurnShare], states: States, pilots: Mapping[str, Pilot], *, record: bool
 ) -> JobResult | None:
     """Return what has become of parts of a job done one after the other; None if one cannot be done."""
-    begins, ends, soonest, back = [], {}, {}, 0.0
+    begins, ends, bounds, back = [], {}, {}, 0.0
     for part in parts:
         name, pilot = part.pilot.robot.name, part.pilot
         turn = turn_of(name, states, pilots, part.material.task)
@@ -86,6 +85,6 @@ def in_turns(
         end = run.state(part.end)
         states = {**turn, name: end}
         begins.append(run.started())
-        ends[name], soonest[name] = end.time, end.time - end.lead
+        ends[name], bounds[name] = end.time, end.bounds
         back = max(back, run.back(part.end))
-    return JobResult(states, min(begins), ends, soonest, back)
+    return JobResult(states, min(begins), ends, bounds, back)

@@ -213,7 +213,6 @@ class Beginning:
             return tuple(each.message for each in made.diagnostics[:1])
         stages = Stages(lambda: models, self._contributions)
         try:
-            stages.settle_charges()
             refused = refusals(stages.verdicts, stages.program)
         except InfeasibleError as error:
             return tuple(error.reasons)

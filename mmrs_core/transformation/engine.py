@@ -38,7 +38,7 @@ from mmrs_core.transformation.chain import (
     UseDevice,
 )
 from mmrs_core.transformation.drafting import draft
-from mmrs_core.transformation.fluid import Corners
+from mmrs_core.transformation.fluid import FluidTransitions
 
 ORIGIN: Position = (0.0, 0.0, 0.0)
 
@@ -112,7 +112,7 @@ class _Assembly:
         return behaviour, Trace(tuple(_links(robots)))
 
     def _robot(self, robot: Robot, chain: Chain) -> bl.Robot:
-        corners = Corners(robot, self._scene, chain)
+        fluid = FluidTransitions(robot, self._scene, chain)
         moves = [self._move(node, index) for index, node in enumerate(chain.nodes)]
         return bl.Robot(
             id=robot.name,
@@ -122,7 +122,7 @@ class _Assembly:
             home=self._coordinates.at(robot.home),
             slots=list(self._slots.get(robot.name, {}).values()),
             moves=moves,
-            moveTransitions=[self._transition(edge, robot, moves, corners) for edge in chain.edges],
+            moveTransitions=[self._transition(edge, robot, moves, fluid) for edge in chain.edges],
             policies=[_policy(policy) for policy in _policies(robot, self._scene)],
         )
 
@@ -183,7 +183,7 @@ class _Assembly:
         return bl.MulticastNotify(slots=slots)
 
     def _transition(
-        self, edge: DraftTransition, robot: Robot, moves: list[bl.Move], corners: Corners
+        self, edge: DraftTransition, robot: Robot, moves: list[bl.Move], fluid: FluidTransitions
     ) -> bl.MoveTransition:
         assert edge.to is not None
         waits = [self._slots[robot.name][signal] for signal in edge.waits]
@@ -192,7 +192,7 @@ class _Assembly:
                 from_=moves[edge.source],
                 to=moves[edge.to],
                 waitFor=waits,
-                fluid=corners.may_flow(edge),
+                fluid=fluid.may_flow(edge),
             )
         assert edge.otherwise is not None
         return bl.Choice(

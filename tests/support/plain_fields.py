@@ -15,7 +15,7 @@ def field(homes, stops, **features):
     out = [dist(home, stop) for home in homes for stop in stops]
     near = [sorted(set(range(n)) - {i}, key=lambda j, i=i: dist(stops[i], stops[j])) for i in range(n)]
     plain = {
-        "sizes": [n, m, n - 1, m, 0],
+        "sizes": [n, m, n - 1, m, 0, 0],
         "kinds": [0] * m,
         "out": out,
         "go": [dist(one, two) for one in stops for two in stops],

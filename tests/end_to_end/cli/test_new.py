@@ -73,7 +73,6 @@ def test_a_new_mission_has_a_safe_plan_or_no_robot_of_it_can_do_the_task(place, 
         return
     made = beginning.project(Path("new"), "new", team, able)
     stages = Stages(lambda: made.models, CONTRIBUTIONS)
-    stages.settle_charges()
     assert list(refusals(stages.verdicts, stages.program)) == []
     assert len(stages.scene.tasks) == len(able)
 

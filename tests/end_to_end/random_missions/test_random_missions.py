@@ -29,6 +29,6 @@ def test_a_thousand_behaviours_pass_and_solvable_missions_are_not_refused(first,
     check(first, contributions, tmp_path)
 
 
-def test_a_plan_that_would_exceed_a_charge_is_made_again_with_less_of_it(contributions, tmp_path):
+def test_a_plan_whose_charge_barely_suffices_is_safe(contributions, tmp_path):
     outcome = outcome_of(2015, contributions, tmp_path)
     assert (outcome.refused, outcome.complaints) == ("", [])

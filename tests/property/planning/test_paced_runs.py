@@ -66,7 +66,7 @@ def test_without_inertia_every_run_takes_exactly_what_is_counted(parts, data):
 @given(cut_roads(), st.data())
 def test_the_soonest_is_never_later_than_the_latest_and_even_speed_without_actions(parts, data):
     pilot = pilot_with(0.5)
-    late, soon = paced(parts, pilot), paced(parts, pilot, soonest=True)
+    late, soon = paced(parts, pilot), paced(parts, pilot, -1)
     first = data.draw(st.integers(0, len(parts) - 1))
     last = data.draw(st.integers(first, len(parts) - 1))
     quickest = soon[last][1] - soon[first][0]

@@ -17,7 +17,6 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import InfeasibleError, InvalidModelError
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
-from mmrs_core.stages import Stages
 from mmrs_runtime.semantics import Outcome as Outcomes
 
 GRID = 1e-6
@@ -72,9 +71,9 @@ def write_project(made, registry, folder):
 
 def _carry_out(folder, contributions, outcome):
     models, _ = pipeline.valid_models(folder, contributions)
-    stages = Stages(lambda: models, contributions)
-    stages.settle_charges()
-    scene, (behaviour, _) = stages.scene, stages.transformed
+    scene = pipeline.expand(pipeline.ground(models), contributions)
+    plan = pipeline.plan(scene)
+    behaviour, _ = pipeline.transform(scene, plan, contributions)
     pipeline.save(behaviour, folder / "behaviour.xmi", contributions)
     behaviour = _read_again(folder / "behaviour.xmi", models, contributions, outcome)
     program = pipeline.program_of(behaviour, contributions)

@@ -22,7 +22,7 @@ TEXT = [
     "  dependencies  0:42 sooner                   'Brezza' waits for 'gate' of 'Alba'",
     "  deadlines     no sooner                     'gate' ends 18 s before its deadline",
     "  robotsWanted  no sooner",
-    "  charge        no sooner                     'Brezza' uses 87 of the 1200 s of a charge (7 %)",
+    "  charge        no sooner                     'Brezza' uses up to 87 of the 1200 s of a charge (7 %)",
     "",
     "Why these robots",
     "  each alternative was planned, with all other tasks as they are",

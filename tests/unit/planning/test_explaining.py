@@ -72,7 +72,8 @@ def test_what_charging_and_a_clock_cost_is_measured():
     works = {
         name: road((0.0, y, 20.0), (1000.0, y, 20.0), cuts=CUTS) for name, y in (("a", 50.0), ("b", 70.0))
     }
-    whole = scene([with_kinematics(TWO[0], endurance=240.0)], works, tasks={"a": task("a", earliest=100.0)})
+    tasks = {name: task(name, earliest=100.0) for name in works}
+    whole = scene([with_kinematics(TWO[0], endurance=240.0)], works, tasks=tasks)
     found, explanation = explained(whole)
     costs = {each.name: each.cost for each in explanation.limits}
     plenty = replace(whole, robots=(TWO[0],))

@@ -77,15 +77,15 @@ def test_hops_keep_clear():
 
 def test_at_the_soonest_a_robot_goes_on_where_nothing_is_done():
     bend, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0), cuts=(150.0,))
-    assert paced(bend, pilot_of(), soonest=True)[-1][1] == pytest.approx(60.0)
+    assert paced(bend, pilot_of(), -1)[-1][1] == pytest.approx(60.0)
 
 
 def test_at_the_soonest_a_robot_still_stops_between_two_actions():
     cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), cuts=(), actions=(photo(0.0), photo(300.0)))
-    assert paced(cut, pilot_of(), soonest=True)[-1][1] == pytest.approx(50.0 + 2.0)
+    assert paced(cut, pilot_of(), -1)[-1][1] == pytest.approx(50.0 + 2.0)
 
 
 def test_where_robots_stop_at_every_corner_the_soonest_is_what_is_planned():
     cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0))
     strict = pilot_of(minimum_separation=5.0)
-    assert paced(cut, strict, soonest=True) == paced(cut, strict)
+    assert paced(cut, strict, -1) == paced(cut, strict)

@@ -72,7 +72,7 @@ def test_priority_does_not_rise_along_a_tour():
 
 def test_stops_that_are_to_be_apart_have_different_robots():
     apart = [1, 2, 0, 2, 0, 1, *([-1] * 14)]
-    tours = searched(field(places(3, 7), places(10, 8), sizes=[10, 3, 9, 3, 2], apart=apart))
+    tours = searched(field(places(3, 7), places(10, 8), sizes=[10, 3, 9, 3, 2, 0], apart=apart))
     assert len({tours.robot[i] for i in range(3)}) == 3
 
 

@@ -9,9 +9,9 @@ from mmrs_core.analysis.clearance import RADIUS
 from mmrs_core.behaviour.earth import degrees_of, metres, origin_above_ellipsoid, sea_level_of
 from mmrs_core.behaviour.travel import TRAVEL_MARGINS, speed_of, travel_margins_of
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.planning.corners import LEAST_CUT
 from mmrs_core.scene import Capability, Frame
 from mmrs_core.testing.programs import L_AQUILA, program
-from mmrs_core.transformation.fluid import LEAST_CUT
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.wpl import WPL

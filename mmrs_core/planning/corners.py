@@ -1,0 +1,73 @@
+"""Corners of a path that a robot may pass without a stop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+from math import acos, dist, hypot, pi
+
+import shapely
+
+from mmrs_core.scene import Area, Kinematics, Position, Robot
+
+LEAST_CUT = 2.0
+"""Metres by which a corner may be cut at least: autopilots count a place as passed within a radius, and may
+accelerate less than the robot's type says."""
+
+STRAIGHT = pi / 180
+"""Turns smaller than this, in radians, cut no corner."""
+
+
+class Corners:
+    """The corners that a robot may pass among some areas.
+
+    A robot that goes round a corner without a stop cuts it by up to v² / 2a, or by the radius within which
+    its autopilot counts the corner as passed. One that needs room to turn passes where its narrowest curve
+    fits into the corner, which it then cuts by less than the radius that it keeps everywhere.
+    """
+
+    def __init__(self, robot: Robot, areas: Iterable[Area]) -> None:
+        """Make it for a robot that keeps away from areas."""
+        self._robot, self._areas = robot, list(areas)
+
+    @cached_property
+    def _shapes(self) -> list[tuple[shapely.Polygon, float]]:
+        own = self._robot.clearance
+        return [(shapely.Polygon(area.shell), area.safety_distance + own) for area in self._areas]
+
+    def may_pass(self, start: Position | None, corner: Position, end: Position, speed: float | None) -> bool:
+        """Return whether the robot need not stop at a corner.
+
+        Args:
+            start: where the leg to the corner begins; None: not known.
+            corner: between two legs.
+            end: of the leg from there.
+            speed: commanded on the leg to the corner, metres per second; None: its cruise.
+        """
+        if start is not None and _turn(start, corner, end) < STRAIGHT:
+            return True
+        kinematics = self._robot.kinematics
+        if kinematics is None:
+            return False
+        if kinematics.turning_radius > 0.0:
+            return start is not None and _fits(kinematics, start, corner, end)
+        cut = max(LEAST_CUT, kinematics.timing.cut(speed or kinematics.cruise))
+        point = shapely.Point(corner[:2])
+        return all(shape.distance(point) >= keep + cut for shape, keep in self._shapes)
+
+
+def _fits(kinematics: Kinematics, start: Position, corner: Position, end: Position) -> bool:
+    shorter = min(dist(start[:2], corner[:2]), dist(corner[:2], end[:2]))
+    turn = _turn(start, corner, end)
+    return turn < pi and kinematics.fits_curve(turn, shorter)
+
+
+def _turn(start: Position, corner: Position, end: Position) -> float:
+    """Return the angle by which the path turns at the corner, in radians; pi where it is not defined."""
+    a = tuple(y - x for x, y in zip(start, corner, strict=True))
+    b = tuple(y - x for x, y in zip(corner, end, strict=True))
+    lengths = hypot(*a) * hypot(*b)
+    if lengths == 0.0:
+        return pi
+    cosine = sum(x * y for x, y in zip(a, b, strict=True)) / lengths
+    return acos(max(-1.0, min(1.0, cosine)))
