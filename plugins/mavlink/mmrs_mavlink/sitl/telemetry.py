@@ -111,10 +111,14 @@ def _attitude(pilot: SimulatedAutopilot) -> Message:
 def mission_current(pilot: SimulatedAutopilot) -> Message:
     """Return the current mission item, and the state of the mission."""
     total = max(0, len(pilot.stores[MISSION]) - pilot.first_item)
-    state = 4 if pilot.finished else 3 if pilot.mode_name == "auto" else 2
-    return mavlink.MAVLink_mission_current_message(
-        pilot.current_item, total, state if pilot.has_mission else 1
-    )
+    if not pilot.has_mission:
+        state = mavlink.MISSION_STATE_NO_MISSION
+    elif pilot.finished:
+        state = mavlink.MISSION_STATE_COMPLETE
+    else:
+        active = pilot.mode_name == "auto"
+        state = mavlink.MISSION_STATE_ACTIVE if active else mavlink.MISSION_STATE_NOT_STARTED
+    return mavlink.MAVLink_mission_current_message(pilot.current_item, total, state)
 
 
 def _status(pilot: SimulatedAutopilot) -> Message:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import hypot
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from simulated import Bench
 
 from mmrs_mavlink.sitl.items import StoredItem
@@ -135,7 +136,9 @@ def test_a_mission_with_a_take_off_is_flown_from_the_ground_to_its_landing(bench
 
 def test_a_mission_that_ends_in_the_air_holds_there(bench):
     flown(bench, *bench.go_to((0.0, 20.0, 20.0)), until=1)
+    assert mission_current(bench.pilot).mission_state == mavlink.MISSION_STATE_ACTIVE
     assert bench.wait_for(lambda: bench.pilot.finished)
+    assert mission_current(bench.pilot).mission_state == mavlink.MISSION_STATE_COMPLETE
     bench.wait(20.0)
     assert bench.pilot.body.distance_to((0.0, 20.0, 20.0)) < 0.5
     assert visited(bench) == [1]
