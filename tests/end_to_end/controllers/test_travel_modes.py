@@ -27,7 +27,7 @@ AGGRESSIVE = Travel("AGGRESSIVE", radius=2.0, margin=0.0)
 def told():
     """Return a function that sets a vehicle up, and gives its parameters then, and what was said."""
 
-    def after(travel, kind="copter", **settings):
+    def after(travel, kind="copter", speed=0.0, **settings):
         port = free_port()
         vehicle = SimulatedVehicle(port, Settings(kind, 42.37, 13.35, **settings), speedup=10.0)
         vehicle.start()
@@ -35,7 +35,7 @@ def told():
         try:
             assert link.wait(lambda: link.component, 30.0)
             link.expect(profile_for(kind))
-            return vehicle.autopilot.parameters, list(set_up(link, travel))
+            return vehicle.autopilot.parameters, list(set_up(link, travel, speed=speed))
         finally:
             link.close()
             vehicle.stop()
@@ -64,6 +64,18 @@ def test_a_vehicle_climbs_descends_and_turns_no_faster_than_its_type(told, kind,
         "WPNAV_SPEED_UP = 40, which was 250: it climbs at 0.4 m/s, as its type states",
         *([turns] if obeys else []),
     ]
+
+
+@pytest.mark.parametrize(
+    ("limit", "speed", "warns"), [(3.0, 5.0, True), (5.0, 5.0, False), (12.0, 15.0, False)]
+)
+def test_an_owner_who_limits_the_level_speed_is_left_so_and_operators_are_warned(told, limit, speed, warns):
+    found, said = told(Travel(), speed=speed, firmware="px4", parameters={"MPC_XY_VEL_MAX": limit})
+    assert found["MPC_XY_VEL_MAX"] == limit
+    slower = (
+        "MPC_XY_VEL_MAX = 3: slower than the 5 m/s of its program (warning: it takes longer than planned)"
+    )
+    assert said == ([slower] if warns else [])
 
 
 def test_an_aggressive_robot_leaves_the_owners_margin(told):

@@ -157,6 +157,8 @@ class VehicleProfile:
         speed_repeats: number of targets in a row with which a new speed is sent: any may be lost.
         stops_early: whether it stops as soon as it is within the radius of its target.
         radii: parameters for the radius of waypoints, with their units in a metre.
+        fastest: parameters for its level speed, with their units in a metre per second: it goes no faster,
+            whatever is commanded.
         climbs, descents: parameters for its vertical speeds, with their units in a metre per second.
         yaw_rates: parameters for its turn rate, with their units in a degree per second.
         corridor: metres that it is beside its legs at most, in corners and gusts.
@@ -199,6 +201,7 @@ class VehicleProfile:
     speed_repeats: int = 3
     stops_early: bool = False
     radii: Mapping[str, float] = field(default_factory=dict)
+    fastest: Mapping[str, float] = field(default_factory=dict)
     climbs: Mapping[str, float] = field(default_factory=dict)
     descents: Mapping[str, float] = field(default_factory=dict)
     yaw_rates: Mapping[str, float] = field(default_factory=dict)

@@ -251,6 +251,7 @@ def _on_px4(name: str, profile: VehicleProfile) -> VehicleProfile:
         breach=BREACH,
         safeguards=SAFEGUARDS,
         radii={"NAV_ACC_RAD": 1.0},
+        fastest={"MPC_XY_VEL_MAX": 1.0},
         climbs={"MPC_Z_V_AUTO_UP": 1.0},
         descents={"MPC_Z_V_AUTO_DN": 1.0},
         yaw_rates={"MPC_YAWRAUTO_MAX": 1.0},

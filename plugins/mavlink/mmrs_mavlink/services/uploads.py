@@ -37,6 +37,7 @@ class Uploads:
         fence: polygons that the vehicle must stay out of. rally: where it may go in an emergency.
         words: what people must know of the fence.
         places: all that the program leads to, which the vehicle's own fences must leave free.
+        speed: metres per second, the largest that the program commands.
     """
 
     mission: tuple[Item, ...] = ()
@@ -45,6 +46,7 @@ class Uploads:
     rally: tuple[Item, ...] = ()
     places: tuple[Place, ...] = ()
     words: tuple[str, ...] = ()
+    speed: float = 0.0
 
 
 def uploads_of(robot: Robot, *, fenced: bool = True) -> Uploads:
@@ -52,7 +54,7 @@ def uploads_of(robot: Robot, *, fenced: bool = True) -> Uploads:
     mission, flights = mission_of(robot)
     fence = fence_of(robot) if fenced else ()
     words = robot.tight if fenced else ()
-    return Uploads(mission, flights, fence, rally_of(robot), places_in(robot), words)
+    return Uploads(mission, flights, fence, rally_of(robot), places_in(robot), words, speed_of(robot))
 
 
 def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, UploadedRun]]:
@@ -93,6 +95,12 @@ def places_in(robot: Robot) -> tuple[Place, ...]:
     gone = [each.at for each in movements if isinstance(each, GoTo) and not isinstance(each.at, Object)]
     climbed = [at_height(robot.home, each.height) for each in movements if isinstance(each, TakeOff)]
     return (*gone, *climbed)
+
+
+def speed_of(robot: Robot) -> float:
+    """Return the largest speed that a robot's program commands, metres per second."""
+    movements = (step.movement for step in robot.steps)
+    return max((each.speed or 0.0 for each in movements if isinstance(each, GoTo)), default=0.0)
 
 
 def rally_of(robot: Robot) -> tuple[Item, ...]:

@@ -114,7 +114,7 @@ class MavlinkVehicle(Vehicle):
             self._tell(changed)
         for line in preparation.report_failsafes(self._link):
             self._tell(line)
-        for line in set_up(self._link, self._travel, self._acceptance):
+        for line in set_up(self._link, self._travel, self._acceptance, uploads.speed):
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
         if fenced:

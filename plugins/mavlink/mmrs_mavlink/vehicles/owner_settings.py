@@ -189,13 +189,19 @@ def _shown(systems: range) -> str:
     return f"{systems[0]}" if len(systems) == 1 else f"{systems[0]} to {systems[-1]}"
 
 
-def set_up(link: Link, travel: Travel, acceptance: float = inf) -> Iterator[str]:
-    """Set a vehicle up for a way of travelling; yield what was changed, and what was not confirmed.
+LATE = "warning: it takes longer than planned"
+
+
+def set_up(link: Link, travel: Travel, acceptance: float = inf, speed: float = 0.0) -> Iterator[str]:
+    """Set a vehicle up for a way of travelling; yield what operators should know.
+
+    That is what was changed, what was not confirmed, and where its owner lets it go more slowly than planned.
 
     Args:
         link: to the vehicle.
         travel: how carefully it is to go.
         acceptance: metres from a place at which it counts as reached.
+        speed: metres per second, the largest that its program commands.
     """
     profile, mode = link.profile, f"it travels {travel.mode}"
     radius = min(travel.radius, acceptance) if profile.stops_early else travel.radius
@@ -209,8 +215,13 @@ def set_up(link: Link, travel: Travel, acceptance: float = inf) -> Iterator[str]
             why = f"it {how.format(rate)}, as its type states"
             most |= {name: (rate * unit, why) for name, unit in units.items()}
     least = {name: (travel.margin, mode) for name in profile.autopilot.margins}
-    found = parameters.read(link, [*most, *least])
+    found = parameters.read(link, [*most, *least, *profile.fastest])
+    expected = min(speed, profile.pacing.step.speed)
     for name, value in found.items():
+        if name in profile.fastest:
+            if value < expected * profile.fastest[name]:
+                yield f"{name} = {value:g}: slower than the {speed:g} m/s of its program ({LATE})"
+            continue
         wanted, why = most.get(name) or least[name]
         if value > wanted if name in most else value < wanted:
             yield _changed(link, name, value, wanted, why)
