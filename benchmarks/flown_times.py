@@ -55,7 +55,7 @@ def main() -> int:
     legs, good = sum(len(each.legs) for each in found), sum(each.good_legs for each in found)
     print(f"\nlegs within 15 %: {good} of {legs}, {good / legs:.1%}" if legs else "\nno legs")
     enough = not missing and legs and good >= MOST_LEGS * legs
-    return 0 if enough and all(each.is_true for each in found) else 1
+    return 0 if enough and not any(fault for each in found for fault in each.faults()) else 1
 
 
 def details(each: Comparison) -> list[str]:

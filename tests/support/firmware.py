@@ -105,7 +105,10 @@ FIRMWARES = (ARDUCOPTER, ARDUROVER, ARDUSUB, PX4)
 
 
 class Fix(NamedTuple):
-    """What a vehicle reported of itself: seconds since its start, degrees, metres, metres per second."""
+    """What a vehicle reported of itself: seconds since its start, degrees, metres, metres per second.
+
+    `seq` is `Observer.item`.
+    """
 
     t: float
     lat: float
@@ -130,7 +133,8 @@ class Observer:
         port: where it listens. track: every fix, about ten a second. texts: with the seconds of the vehicle.
         version: of the firmware, as it reports it. has_been_armed: whether it ever was.
         parameters: that it has reported. requests, mission_acks: of transfers: type, and number or result.
-        acks: of commands: number, result. system: of the vehicle.
+        acks: of commands: number, result. system: of the vehicle. photos: numbers of those that it has
+            reported; of two at once, it may report the second only.
     """
 
     def __init__(self, peer: tuple[str, int] | None = None, system: int = 0) -> None:
@@ -140,6 +144,7 @@ class Observer:
         self.version = ""
         self.has_been_armed = False
         self.parameters: dict[str, float] = {}
+        self.photos: set[int] = set()
         self.requests: list[tuple[int, int]] = []
         self._sorts: dict[str, struct.Struct] = {}
         self._is_px4: bool | None = None  # before its first heartbeat
@@ -170,7 +175,7 @@ class Observer:
 
     @property
     def item(self) -> int:
-        """Return the number of the mission's item that it is at."""
+        """Return the number of the mission's item that it is at; once it is complete, one beyond the last."""
         return self._item
 
     @property
@@ -273,7 +278,10 @@ class Observer:
         elif kind == "GLOBAL_POSITION_INT":
             self._keep_fix(message)
         elif kind == "MISSION_CURRENT":
-            self._item = message.seq
+            complete = message.mission_state == mavlink.MISSION_STATE_COMPLETE
+            self._item = message.total + 1 if complete else message.seq
+        elif kind in ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK"):
+            self.photos.add(message.img_idx if kind == "CAMERA_FEEDBACK" else message.image_index)
         elif kind == "STATUSTEXT":
             self.texts.append((self._now, message.text))
         elif kind == "PARAM_VALUE" and self._is_px4 is not None:

@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 
 import pytest
-from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
+from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, compared
 
 FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
 FLIGHTS = sorted(each.parent for each in Path(FOLDER).glob("*/behaviour.xmi")) if FOLDER else []
@@ -24,18 +24,9 @@ def found():
     return [each for flight in flights for each in compared(flight, px4=flight.name.startswith("px4"))]
 
 
-def test_flights_take_what_is_planned(found):
-    whole = [each for each in found if each.whole]
-    assert whole
-    assert [each.line() for each in whole if abs(each.ratio - 1.0) > WITHIN] == []
-
-
-def test_flights_keep_to_the_bounds_of_the_check(found):
-    assert [each.line() for each in found if not each.low <= each.flown <= each.high] == []
-
-
-def test_steps_keep_to_the_bounds_of_the_check(found):
-    assert [f"{each.flight} {each.robot} {words}" for each in found for words in each.outside] == []
+def test_flights_take_what_is_planned_and_keep_to_the_bounds_of_the_check(found):
+    assert any(each.whole for each in found)
+    assert [f"{each.flight} {fault}" for each in found for fault in each.faults()] == []
 
 
 def test_nearly_all_legs_take_what_is_planned(found):

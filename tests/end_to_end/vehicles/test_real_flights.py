@@ -10,9 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from example_flight.fleets import PEERS
-from firmware import ARDUCOPTER, FIRMWARES
+from firmware import ARDUCOPTER, FIRMWARES, Fix
+from flown_times.comparison import compared
 from real_flights.flight import Begun
+from real_flights.flying import write_track
 from real_flights.judging import distances
+from real_flights.plans import ROVER_AUTO
 from real_flights.table import FLIGHTS
 
 HARNESS = Path(__file__).parents[3] / "benchmarks" / "real_flights.py"
@@ -75,6 +78,19 @@ def test_distances_are_those_to_the_nearest_leg():
     rows = np.array([(5.0, 2.0, 1.0), (13.0, 5.0, 4.0), (-3.0, -4.0, 0.0)])
     assert distances(rows, line, plane=True).tolist() == pytest.approx([2.0, 3.0, 5.0])
     assert distances(rows, line, plane=False).tolist() == pytest.approx([5.0**0.5, 5.0, 5.0])
+
+
+@pytest.mark.parametrize("completes", [True, False])
+def test_the_mission_of_a_rover_that_stays_armed_is_over_once_it_is_complete(tmp_path, completes):
+    flight = next(each for each in FLIGHTS if each.name == "rover: plan in AUTO")
+    flight.models(tmp_path)
+    driven = [
+        Fix(t, 42.35, 13.39, 630.0, 0.0, 0.0, 0.0, 0.0, 0.0, True, ROVER_AUTO, 1 + t // 16) for t in range(96)
+    ]
+    waiting = [driven[-1]._replace(t=t, seq=7 if completes else 6) for t in range(96, 200)]
+    write_track(tmp_path / "Badger.track.csv.gz", [*driven, *waiting])
+    (found,) = compared(tmp_path)
+    assert (found.whole, found.flown == 95.0) == (completes, completes)
 
 
 def test_names_of_flights_are_unique_and_happenings_wait_for_something():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -57,19 +57,22 @@ class Comparison:
     def good_legs(self) -> int:
         return sum(abs(planned / flown - 1.0) <= LEGS_WITHIN for planned, flown in self.legs.values())
 
-    @property
-    def is_true(self) -> bool:
-        exact = abs(self.ratio - 1.0) <= WITHIN or not self.whole
-        return exact and self.low <= self.flown <= self.high
-
     def line(self) -> str:
         end = "" if self.whole else "  not completed"
         return (
             f"{self.flight:26} {self.robot:8} {self.way:8}"
             f" {self.planned:8.1f} {self.low:8.1f} {self.high:8.1f} {self.flown:8.1f} {self.ratio:6.3f}"
             f"  {self.good_legs:3} of {len(self.legs):3}"
-            f"  {'' if self.is_true else 'deviates'}{end}"
+            f"  {'deviates' if any(self.faults()) else ''}{end}"
         ).rstrip()
+
+    def faults(self) -> Iterator[str]:
+        """Yield what is not as planned and checked, in words."""
+        if self.whole and abs(self.ratio - 1.0) > WITHIN:
+            yield f"'{self.robot}': {self.flown:.0f} s, planned {self.planned:.0f} s"
+        if not self.low <= self.flown <= self.high:
+            yield f"'{self.robot}': {self.flown:.0f} s, checked {self.low:.0f} to {self.high:.0f} s"
+        yield from (f"'{self.robot}': {words}" for words in self.outside)
 
     def add(self, moved: Mapping[str, tuple[float, float]], modelled: Modelled, *, uploaded: bool) -> None:
         """Compare what was flown, as seconds of movement, and with actions, by move."""
@@ -96,8 +99,15 @@ class Comparison:
         self.high = sum(each.bounds.whole.high for each in known)
 
 
-def compared(folder: Path, *, px4: bool = False) -> list[Comparison]:
+def compared(
+    folder: Path, *, px4: bool = False, without: Container[tuple[str, str]] = ()
+) -> list[Comparison]:
     """Return the comparisons of the robots that were recorded in a folder.
+
+    Args:
+        folder: of the flight.
+        px4: whether a PX4 flew that the types do not state.
+        without: robots and moves that are left out, since something happened to them.
 
     Raises:
         NotComparableError: nothing that was flown is there.
@@ -109,7 +119,7 @@ def compared(folder: Path, *, px4: bool = False) -> list[Comparison]:
         track = track_in(folder / f"{robot.id}.track.csv.gz")
         log = folder / "logs" / f"{robot.id}.jsonl"
         if log.is_file():
-            found.append(_steps(folder.name, modelled, log, track))
+            found.append(_steps(folder.name, modelled, log, track, without))
         elif track:
             found.append(_mission(folder.name, modelled, track))
     if not found:
@@ -117,13 +127,21 @@ def compared(folder: Path, *, px4: bool = False) -> list[Comparison]:
     return found
 
 
-def _steps(flight: str, modelled: Modelled, log: Path, track: Sequence[Sample]) -> Comparison:
+def _steps(
+    flight: str,
+    modelled: Modelled,
+    log: Path,
+    track: Sequence[Sample],
+    without: Container[tuple[str, str]],
+) -> Comparison:
     """Return the comparison of a robot that was commanded step by step, runs as missions."""
     robot = modelled.robot
     records = [json.loads(line) for line in log.read_text().splitlines()]
     steps = [(each["label"], each["move"], float(each["time"])) for each in records]
     found = Comparison(flight, robot.id, "steps")
-    found.add(_spans(steps, Clock(steps, track, modelled)), modelled, uploaded=False)
+    spans = _spans(steps, Clock(steps, track, modelled))
+    moved = {move: span for move, span in spans.items() if (robot.id, move) not in without}
+    found.add(moved, modelled, uploaded=False)
     found.whole = bool(steps) and steps[-1][:2] == ("end", robot.moves[robot.stop].id)
     return found
 
@@ -131,17 +149,24 @@ def _steps(flight: str, modelled: Modelled, log: Path, track: Sequence[Sample]) 
 def _mission(flight: str, modelled: Modelled, track: Sequence[Sample]) -> Comparison:
     """Return the comparison of a robot that flew all of its moves as a mission."""
     items = modelled.items()
+    last = len(
+        items
+    )  # since the first is 1; beyond it, the mission is complete, and some vehicles stay armed
     begun = next((each.time for each in track if each.armed and each.mode in AUTO), 0.0)
-    flying = [each for each in track if each.armed and (each.mode in AUTO or 0.0 < begun - each.time < ARMED)]
+    flying = [
+        each
+        for each in track
+        if each.armed and each.item <= last and (each.mode in AUTO or 0.0 < begun - each.time < ARMED)
+    ]
     if not flying:
         raise NotComparableError(f"{modelled.robot.id} has no log, and its track shows no mission")
     moves: dict[str, float] = {}
     for one, two in pairwise(flying):
-        item = items[max(one.item, 1) - 1] if one.item <= len(items) else None
-        if item is not None and item.command in (WAYPOINT, TAKE_OFF):
+        item = items[max(one.item, 1) - 1]
+        if item.command in (WAYPOINT, TAKE_OFF):
             moves[item.move.id] = moves.get(item.move.id, 0.0) + two.time - one.time
-    ended = not track[-1].armed
-    if not ended and 0 < flying[-1].item <= len(items):
+    ended = not track[-1].armed or track[-1].item > last
+    if not ended and flying[-1].item > 0:
         moves.pop(items[flying[-1].item - 1].move.id, None)
     found = Comparison(flight, modelled.robot.id, "mission", whole=ended)
     found.add({move: (seconds, seconds) for move, seconds in moves.items()}, modelled, uploaded=True)

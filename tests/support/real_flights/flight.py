@@ -104,6 +104,8 @@ class Flight:
         ends: how each robot ends; its own where `ends_of` names it.
         fault: that the log must hold; empty: none may.
         deviation: metres from the planned line, at most; None: what happens leads away from it.
+        timed: whether times are judged; not where the vehicle's owner lets it go more slowly than planned.
+        says: what the program must say. photos: fewest and most that the vehicle must report.
         landing: metres in the plane from the planned end, or from home, at most.
         parameters: of the vehicles, beyond those of their firmware.
         arguments: of `mmrs run` or the controllers.
@@ -120,6 +122,9 @@ class Flight:
     ends: str = DONE
     fault: str = ""
     deviation: float | None = 1.5
+    timed: bool = True
+    says: str = ""
+    photos: tuple[int, int] = (0, 0)
     landing: float = 1.0
     parameters: Mapping[str, float] = field(default_factory=dict)
     arguments: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from math import hypot
+from math import hypot, inf
 from pathlib import Path
 from secrets import token_bytes
 from typing import IO
@@ -19,6 +19,7 @@ from typing import IO
 import numpy as np
 from example_flight.ways import controller_commands, run_command
 from firmware import ARDUCOPTER, ARDUROVER, ARDUROVER_SKID, ARDUSUB, PX4, Firmware, Fix, InstalledVehicle
+from flown_times.comparison import Comparison, NotComparableError, compared
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -78,16 +79,19 @@ class Result:
     """What came of a flight.
 
     Attributes:
-        planned, flown: seconds. deviation: metres, all and 95 %. landing: metres. margin: to areas.
-        kept: part of the speed-up. end: of each robot. faults: of the logs. deviates: what is not as
-            declared, in words. versions: of firmware. confirmed: orders, with real seconds.
+        flown: seconds. times: of each robot, planned and flown, where all came to its end. deviation:
+            metres, all and 95 %. landing: metres. margin: to areas.
+        photos: that were reported. kept: part of the speed-up. end: of each robot. faults: of the logs.
+        deviates: what is not as declared, in words. versions: of firmware. confirmed: orders, with real
+            seconds.
     """
 
-    planned: float = 0.0
     flown: float = 0.0
+    times: list[Comparison] = field(default_factory=list)
     deviation: tuple[float, float] | None = None
     landing: float | None = None
     margin: float | None = None
+    photos: int = 0
     kept: float = 0.0
     end: dict[str, str] = field(default_factory=dict)
     faults: dict[str, str] = field(default_factory=dict)
@@ -147,6 +151,7 @@ class Flying:
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.interrupts = 0.0
         self._changed: dict[tuple[str, str], float | None] = {}
+        self._upset: set[tuple[str, str]] = set()
         self._key = token_bytes(32) if flight.signed else b""
 
     def fly(self) -> Result:
@@ -296,7 +301,8 @@ class Flying:
             since = observer.now
 
     def _let_happen(self, what: Happening, robot: str, said: IO[bytes]) -> None:
-        observer = self.vehicles[robot].observer
+        observer, steps = self.vehicles[robot].observer, self._steps(robot)
+        self._upset |= {(robot, step.move) for step in steps[-1:]}
         said.write(f"--- {observer.now:.1f} s: {what}\n".encode())
         said.flush()
         match what:
@@ -349,7 +355,7 @@ class Flying:
     def _at_rest(self, robot: str) -> bool:
         """Return whether a vehicle has come to rest, a copter on the ground or where it is to hold."""
         observer, kind = self.vehicles[robot].observer, self.plan.vehicle(robot)
-        if self.flight.way == PLAN and kind != "copter" and observer.item < self.items - 1:
+        if self.flight.way == PLAN and kind != "copter" and observer.item < self.items:
             return False
         return self._still(robot) and (not observer.armed or kind != "copter" or self.flight.ends == HOLDS)
 
@@ -372,10 +378,10 @@ class Flying:
         if result.kept < KEPT:
             result.deviates.append(f"only {int(100.0 * result.kept)} % of the speed-up kept")
         all_rows: list[np.ndarray] = []
-        result.planned = max((self.plan.seconds.get(robot, 0.0) for robot in self.robots), default=0.0)
         for robot in self.robots:
             observer = self.vehicles[robot].observer
             write_track(self.folder / f"{robot}.track.csv.gz", observer.track)
+            result.photos += max(observer.photos) - min(observer.photos) + 1 if observer.photos else 0
             result.versions.add(f"{self.vehicles[robot].firmware.name} {observer.version}".strip())
             flown = [fix for fix in observer.track if fix.armed]
             if not flown:
@@ -397,6 +403,16 @@ class Flying:
         if flight.way != PLAN:
             self._judge_logs()
         self._compare()
+        if flight.timed and flight.ends == DONE and set(result.end.values()) == {DONE}:
+            self._judge_times()
+
+    def _judge_times(self) -> None:
+        """Compare what was flown with the plan, and with the bounds of its check; waits are left out."""
+        try:
+            self.result.times = compared(self.folder, without=self._upset)
+        except NotComparableError as error:
+            self.result.deviates.append(str(error))
+        self.result.deviates += [fault for each in self.result.times for fault in each.faults()]
 
     def _end_of(self, robot: str, place: np.ndarray, last: Fix) -> str:
         kind = self.plan.vehicle(robot)
@@ -446,6 +462,10 @@ class Flying:
         judged = flight.ends in (DONE, HOME) and result.landing is not None
         if judged and result.landing > flight.landing:
             result.deviates.append(f"{result.landing:.2f} m from the planned end")
+        if not flight.photos[0] <= result.photos <= (flight.photos[1] or inf):
+            result.deviates.append(f"{result.photos} photos")
+        if flight.says not in (self.folder / "said.txt").read_text("utf-8"):
+            result.deviates.append(f"did not say '{flight.says}'")
         if result.margin is not None and result.margin < -0.05 and flight.deviation is not None:
             result.deviates.append(f"{-result.margin:.2f} m too close to an area")
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import copy, copytree
 
@@ -12,6 +12,9 @@ from mmrs_core.resources import shipped
 
 Place = tuple[float, float, float]
 """Metres east, north and up of the robot's home; under water, up of the surface."""
+
+CHARGING = 180.0
+"""Seconds: the longest that a battery of the crafts' types takes."""
 
 ORIGIN = 'latitude="42.35" longitude="13.39" altitude="630.0"'
 AT_SEA = 'latitude="40.66" longitude="14.30" altitude="0.0"'
@@ -44,6 +47,7 @@ COPTER = Craft(
     '<moves xsi:type="multicopter:TakeOff" name="up" altitude="12.0"/>',
     '<moves xsi:type="multicopter:Land" name="down"/>',
 )
+PHOTOGRAPHER = replace(COPTER, example="barn", file="yard-drone.xmi", type="Yard drone")
 ROVER = Craft("drone-and-rover", "field-rover.xmi", "Field rover")
 SUB = Craft("outfall", "survey-auv.xmi", "Survey AUV", origin=AT_SEA)
 
@@ -62,6 +66,8 @@ class Route:
         policies: event, response, seconds.
         home: metres east and north of the origin.
         turns: degrees per second at which it turns to two other places at each; 0: it does not.
+        photos: metres between photos that are taken in passing, on each leg; 0: none.
+        sorties: how often it does all that. It charges before the second, whose moves are ``2-p0`` and so on.
     """
 
     robot: str
@@ -73,6 +79,8 @@ class Route:
     policies: Sequence[tuple[str, str, float]] = ()
     home: tuple[float, float] = (0.0, 0.0)
     turns: float = 0.0
+    photos: float = 0.0
+    sorties: int = 1
 
 
 def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], None]:
@@ -142,26 +150,16 @@ def _behaviour(given: Sequence[Route]) -> str:
 def _robot(number: int, route: Route, targets: list[str]) -> str:
     (east, north), craft = route.home, route.craft
     home = _target(targets, f"{route.robot} home", (east, north, 0.0))
-    moves = ['<moves xsi:type="behaviour:Start" name="start"/>', *filter(None, [craft.up])]
-    fluid: list[bool] = [False] * len(moves)
-    first = len(targets)
-    for index, (x, y, z) in enumerate(route.places):
-        target = _target(targets, f"{route.robot} p{index}", (east + x, north + y, z))
-        moves.append(
-            f'<moves xsi:type="{craft.goes}" name="p{index}" target="{target}" speed="{route.speed:g}"/>'
-        )
-        fluid.append(route.fluid and index < len(route.places) - 1)
-        if index == 0 and route.stays:
-            moves.append(f'<moves xsi:type="behaviour:HoldPosition" name="stay" duration="{route.stays:g}"/>')
-            fluid[-1] = False
-            fluid.append(False)
-        for ahead in (1, 2) if route.turns else ():
-            look = f"//@targets.{first + (index + ahead) % len(route.places)}"
-            heading = f'<heading deviceId="camera" target="{look}"/>'
-            moves.append(f'<moves xsi:type="behaviour:HeadTo" name="h{index}{ahead}">{heading}</moves>')
-            fluid.append(False)
-    moves += [*filter(None, [craft.down]), '<moves xsi:type="behaviour:Stop" name="stop"/>']
-    fluid += [False] * (len(moves) - len(fluid))
+    places = [
+        _target(targets, f"{route.robot} p{index}", (east + x, north + y, z))
+        for index, (x, y, z) in enumerate(route.places)
+    ]
+    moved = [('<moves xsi:type="behaviour:Start" name="start"/>', False), *_sortie(route, places)]
+    for sortie in range(2, route.sorties + 1):
+        charge = f'<moves xsi:type="behaviour:Recharge" name="{sortie}-charge" duration="{CHARGING:g}"/>'
+        moved += [(charge, False), *_sortie(route, places, f"{sortie}-")]
+    moved.append(('<moves xsi:type="behaviour:Stop" name="stop"/>', False))
+    moves, fluid = zip(*moved, strict=True)
     at = f"//@robots.{number}/@moves."
     following = [
         f'<moveTransitions from="{at}{index}" to="{at}{index + 1}"{_fluid(fluid[index])}/>'
@@ -173,6 +171,37 @@ def _robot(number: int, route: Route, targets: list[str]) -> str:
     ]
     opening = f'<robots id="{route.robot}" typeName="{craft.type}" home="{home}">'
     return "\n".join((opening, *moves, *following, *policies, "</robots>"))
+
+
+def _sortie(route: Route, places: Sequence[str], sortie: str = "") -> Iterator[tuple[str, bool]]:
+    """Yield the moves of a sortie, and whether each passes on to the next without a stop."""
+    craft = route.craft
+    if craft.up:
+        yield craft.up.replace('name="', f'name="{sortie}'), False
+    for index, target in enumerate(places):
+        stays = route.stays if index == 0 else 0.0
+        goes = f'<moves xsi:type="{craft.goes}" name="{sortie}p{index}" target="{target}"'
+        goes += f' speed="{route.speed:g}">{_photos(route.photos)}</moves>'
+        yield goes, route.fluid and index < len(places) - 1 and not stays
+        if stays:
+            name = f"{sortie}stay"
+            yield f'<moves xsi:type="behaviour:HoldPosition" name="{name}" duration="{stays:g}"/>', False
+        for ahead in (1, 2) if route.turns else ():
+            heading = f'<heading deviceId="camera" target="{places[(index + ahead) % len(places)]}"/>'
+            name = f"{sortie}h{index}{ahead}"
+            yield f'<moves xsi:type="behaviour:HeadTo" name="{name}">{heading}</moves>', False
+    if craft.down:
+        yield craft.down.replace('name="', f'name="{sortie}'), False
+
+
+def _photos(distance: float) -> str:
+    """Return the actions by which a leg takes photos in passing; none where the distance is 0."""
+    acts = (("preActions", distance), ("postActions", 0.0)) if distance else ()
+    return "".join(
+        f'<{when} xsi:type="behaviour:DeviceAction" actionName="TriggerByDistance" deviceId="camera">'
+        f'<parameters key="distance" value="{metres:g}"/></{when}>'
+        for when, metres in acts
+    )
 
 
 def _fluid(passes: bool) -> str:

@@ -29,7 +29,7 @@ from real_flights.flight import (
     Resume,
     When,
 )
-from real_flights.routes import COPTER, ROVER, SUB, Craft, Route, example, on_px4, routes
+from real_flights.routes import COPTER, PHOTOGRAPHER, ROVER, SUB, Craft, Route, example, on_px4, routes
 
 SQUARE = ((0.0, 30.0, 12.0), (25.0, 30.0, 12.0), (25.0, 0.0, 12.0), (0.0, 0.0, 12.0))
 LAWN = tuple(
@@ -54,6 +54,10 @@ def _short(craft: Craft, *policies: tuple[str, str, float], stays: float = 0.0, 
     name = {COPTER: "Alba", ROVER: "Badger", SUB: "Nereid"}[craft]
     return Route(name, craft, places, speed, fluid=fluid, stays=stays, policies=policies)
 
+
+PASSING = Route("Kestrel", PHOTOGRAPHER, SQUARE, 3.0, photos=8.0)
+"""On each leg, one at once, three at 8 m each, and a last one; an ArduPilot whose shutter has not closed yet
+leaves out the first of the next leg, at the same place."""
 
 NAMES: Mapping[Craft, str] = {COPTER: "copter", ROVER: "rover", SUB: "sub"}
 AT_LEG = Begun("p1", 3.0)
@@ -218,8 +222,11 @@ def _ways(craft: Craft) -> tuple[Flight, ...]:
         ),
     ]
     if craft is COPTER:
-        turning = routes(replace(_short(craft), turns=20.0))
-        given.append(Flight(f"{NAMES[craft]}: turns", turning, landing=landing, deviation=deviation))
+        given += [
+            Flight("copter: turns", routes(replace(_short(craft), turns=20.0))),
+            Flight("copter: two sorties", routes(replace(_short(craft), sorties=2))),
+            Flight("copter: photos in passing", routes(PASSING), photos=(17, 20)),
+        ]
     return tuple(given)
 
 
@@ -307,10 +314,17 @@ PX4S = (
     *(
         _as_px4(_COPTERS[name])
         for name in (
-            *("legs", "fluid", "plan in AUTO", "turns"),
+            *("legs", "fluid", "plan in AUTO", "turns", "two sorties"),
             *("hold, then resume", "order return", "order stop", "order land"),
             *("link cut for 40 s", "process killed"),
         )
+    ),
+    _as_px4(_COPTERS["photos in passing"], parameters={"TRIG_MODE": 4.0}),
+    replace(
+        _as_px4(_COPTERS["legs"], parameters={"MPC_XY_VEL_MAX": 3.0}),
+        name="PX4: slower by its owner",
+        timed=False,
+        says="MPC_XY_VEL_MAX = 3: slower than the 5 m/s of its program",
     ),
     _as_px4(_COPTERS["pilot takes over"], happens=((AT_LEG, Pilot(4, 6)),)),
     _as_px4(_COPTERS["satellites lost"], happens=((AT_LEG, Change({"SIM_GPS_USED": 0.0})),)),
