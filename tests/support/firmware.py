@@ -25,6 +25,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 FIRST_INSTANCE, INSTANCES, VEHICLES = 80, 160, 8
 """Of ArduPilot's simulations: rarely those of one that was started by hand; of a process, at most eight."""
 
+PX4_INSTANCES = 10
 RATE = 10.0
 ASK_SECONDS = 2.0
 LARGEST = 65_535
@@ -352,7 +353,7 @@ class InstalledVehicle:
             firmware: that is simulated.
             stand: where.
             folder: for its files; its own one is made in it.
-            number: of the vehicle, from 0; its system is one more.
+            number: of the vehicle, from 0; its system is one more, or that of a PX4's instance.
             port: to which it sends; None: any.
             speedup: seconds of the vehicle in a second.
             parameters: beyond those of the firmware.
@@ -367,8 +368,10 @@ class InstalledVehicle:
         self._folder.mkdir(parents=True, exist_ok=True)
         self._process: subprocess.Popen[bytes] | None = None
         px4 = firmware is PX4
-        self.port = 14_540 + number if px4 else port or free_port()
-        self.observer = Observer(("127.0.0.1", 18_570 + number) if px4 else None, number + 1)
+        instance = _px4_instance(number) if px4 else number
+        self._instance, self.system = instance, instance + 1
+        self.port = 14_540 + instance if px4 else port or free_port()
+        self.observer = Observer(("127.0.0.1", 18_570 + instance) if px4 else None, self.system)
 
     @property
     def link(self) -> str:
@@ -377,7 +380,7 @@ class InstalledVehicle:
 
     def link_at(self, port: int) -> str:
         """Return how a program reaches it that listens at another port."""
-        return f"udpin:127.0.0.1:{port}@{self.number + 1}"
+        return f"udpin:127.0.0.1:{port}@{self.system}"
 
     def __enter__(self) -> InstalledVehicle:
         try:
@@ -416,7 +419,7 @@ class InstalledVehicle:
 
     def sign(self) -> None:
         """Give it its key, once it runs: from then on, it signs and accepts only what is signed."""
-        self.observer.send(mavlink.MAVLink_setup_signing_message(self.number + 1, 1, self._key, SIGNED_SINCE))
+        self.observer.send(mavlink.MAVLink_setup_signing_message(self.system, 1, self._key, SIGNED_SINCE))
 
     def kill(self) -> None:
         """End the process."""
@@ -451,7 +454,7 @@ class InstalledVehicle:
             "PX4_HOME_ALT": f"{self._stand.altitude:g}",
             "PX4_SIM_SPEED_FACTOR": f"{self.speedup:g}",
         }
-        return [self.firmware.binary, "-i", str(self.number), "-d", str(build / "etc")], environment
+        return [self.firmware.binary, "-i", str(self._instance), "-d", str(build / "etc")], environment
 
 
 def _home_for_px4(build: Path, *degrees: float) -> list[str]:
@@ -460,6 +463,14 @@ def _home_for_px4(build: Path, *degrees: float) -> list[str]:
     types = {parameter["name"]: parameter["type"] for parameter in listed}
     whole = types["SIH_LOC_LAT0"] == "Int32"
     return [str(round(each * 1e7)) if whole else f"{each:.7f}" for each in degrees]
+
+
+def _px4_instance(number: int) -> int:
+    """Return a number of PX4's instances whose ports are free; all beyond the tenth share the same ports."""
+    for instance in (number, *range(PX4_INSTANCES - 1, number, -1)):
+        if all(is_free(port + instance, socket.SOCK_DGRAM) for port in (14_540, 14_580, 18_570)):
+            return instance
+    raise RuntimeError("no instance of PX4's simulation is left")
 
 
 def _instance(number: int) -> int:

@@ -56,7 +56,10 @@ from real_flights.strait import Strait
 KEPT = 0.9
 """Part of the speed-up that must be kept for a flight to count."""
 
-STILL, STILL_SECONDS = 0.3, 8.0
+STILL, DISARMED_STILL, STILL_SECONDS = 0.3, 1.5, 8.0
+"""Metres per second up to which a vehicle stands still, and seconds for which it must. The estimate of a PX4
+that stands disarmed on the ground wanders by up to 0.9 m/s in its simulation."""
+
 REST_SECONDS = 400.0
 """Seconds of the vehicle in which it must come to rest once its program has ended."""
 
@@ -363,7 +366,9 @@ class Flying:
         track = self.vehicles[robot].observer.track
         latest = [fix for fix in track[-400:] if fix.t > track[-1].t - STILL_SECONDS]
         flew = self.vehicles[robot].observer.has_been_armed
-        return flew and all(hypot(fix.vx, fix.vy, fix.vz) < STILL for fix in latest)
+        return flew and all(
+            hypot(fix.vx, fix.vy, fix.vz) < (STILL if fix.armed else DISARMED_STILL) for fix in latest
+        )
 
     def _wait_for_rest(self) -> None:
         flew = [robot for robot in self.robots if self.vehicles[robot].observer.has_been_armed]
