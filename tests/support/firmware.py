@@ -25,7 +25,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 FIRST_INSTANCE, INSTANCES, VEHICLES = 80, 160, 8
 """Of ArduPilot's simulations: rarely those of one that was started by hand; of a process, at most eight."""
 
-PX4_INSTANCES = 10
+PX4_INSTANCES, PX4_KEPT = 10, 14_650
+"""Instances with ports of their own, and the first of the ports by which each is kept for a vehicle."""
+
 RATE = 10.0
 ASK_SECONDS = 2.0
 LARGEST = 65_535
@@ -368,7 +370,7 @@ class InstalledVehicle:
         self._folder.mkdir(parents=True, exist_ok=True)
         self._process: subprocess.Popen[bytes] | None = None
         px4 = firmware is PX4
-        instance = _px4_instance(number) if px4 else number
+        instance, self._kept = _px4_instance() if px4 else (number, None)
         self._instance, self.system = instance, instance + 1
         self.port = 14_540 + instance if px4 else port or free_port()
         self.observer = Observer(("127.0.0.1", 18_570 + instance) if px4 else None, self.system)
@@ -393,6 +395,8 @@ class InstalledVehicle:
     def __exit__(self, *_: object) -> None:
         self.kill()
         self.observer.stop()
+        if self._kept is not None:
+            self._kept.close()
 
     def start(self, *, wipe: bool = True) -> None:
         """Start the process; without `wipe`, as after a loss of power: what it has stored is kept."""
@@ -465,11 +469,21 @@ def _home_for_px4(build: Path, *degrees: float) -> list[str]:
     return [str(round(each * 1e7)) if whole else f"{each:.7f}" for each in degrees]
 
 
-def _px4_instance(number: int) -> int:
-    """Return a number of PX4's instances whose ports are free; all beyond the tenth share the same ports."""
-    for instance in (number, *range(PX4_INSTANCES - 1, number, -1)):
+def _px4_instance() -> tuple[int, socket.socket]:
+    """Return a number of PX4's instances, and what keeps others from it while the vehicle restarts.
+
+    All beyond the tenth share the same ports.
+    """
+    for instance in reversed(range(PX4_INSTANCES)):
+        kept = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            kept.bind(("127.0.0.1", PX4_KEPT + instance))
+        except OSError:
+            kept.close()
+            continue
         if all(is_free(port + instance, socket.SOCK_DGRAM) for port in (14_540, 14_580, 18_570)):
-            return instance
+            return instance, kept
+        kept.close()
     raise RuntimeError("no instance of PX4's simulation is left")
 
 
