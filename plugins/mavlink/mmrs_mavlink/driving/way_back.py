@@ -117,7 +117,10 @@ class WayBack:
         here, low = state.place, not state.armed or state.place.height <= IN_THE_AIR
         came = list(self._places(start, sortie))
         if not came:
-            self._refuse_astray(start, here)
+            if begun and self._moves.kind(begun) is GoTo and self._astray(start, here):
+                self._leg(here, [start, *way_ahead(self._robot, begun, start, self._moves.target_of)])
+            else:
+                self._refuse_astray(start, here)
             return []
         first = self._steps[sortie[0]].movement
         if isinstance(first, TakeOff) and low:
@@ -205,8 +208,11 @@ class WayBack:
         if why and policy_for(BATTERY_LOW, self._robot).response != CONTINUE:
             raise FaultError(BATTERY_LOW, why)
 
+    def _astray(self, start: Place, here: Place) -> str:
+        return misplaced(self._robot.home, footing(self._robot.home, start), here, self._tolerance)
+
     def _refuse_astray(self, start: Place, here: Place) -> None:
-        if why := misplaced(self._robot.home, footing(self._robot.home, start), here, self._tolerance):
+        if why := self._astray(start, here):
             raise RefusedError(why)
 
 

@@ -223,6 +223,21 @@ def test_a_vehicle_that_has_not_begun_must_be_at_home():
         WayBack(ROBOT, moves, Vehicle(500.0), OFF, 20.0).check(["start"], "up")
 
 
+@pytest.mark.parametrize(
+    ("north", "east", "goes_on"), [(25.0, 0.0, True), (50.0, 0.0, True), (25.0, 30.0, False)]
+)
+def test_one_that_does_not_take_off_may_be_anywhere_on_its_first_leg(north, east, goes_on):
+    robot = replace(ROBOT, steps=tuple(step for step in ROBOT.steps if step.move != "up"))
+    vehicle = Vehicle(east, north, north * 0.4)
+    moves = Moves(robot, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    way = WayBack(robot, moves, vehicle, OFF, 20.0)
+    if goes_on:
+        way.check(["start"], "out")
+        return
+    with pytest.raises(RefusedError, match="30 m off its path: bring it home"):
+        way.check(["start"], "out")
+
+
 def test_the_corner_of_a_trajectory_is_on_the_way():
     vehicle = Vehicle(40.0, 0.0, 15.0)
     recovered("far", "end", vehicle)
