@@ -16,7 +16,7 @@ from ..services.commands import ask, command
 from .guidance import Guidance, guidance_of
 from .readiness import REPEATED_SECONDS
 from .requests import Requests
-from .telemetry import Telemetry
+from .telemetry import HEARING_SECONDS, Telemetry
 
 MODE_TRIES = 3
 REFUSED_SECONDS = 1.0
@@ -391,7 +391,13 @@ class ModeControl:
             raise
         except RefusedError:
             if self._reported == self._link.profile.speed_repeats:
+                self._await_heartbeat()
                 raise
+
+    def _await_heartbeat(self) -> None:
+        """Wait for a heartbeat: a vehicle refuses that has left its mode, and the guard raises what for."""
+        with self._link.inbox("HEARTBEAT", component=self._link.component) as beats:
+            self._link.wait(lambda: beats or None, self._link.clock.patience(HEARING_SECONDS))
 
     def _be_in(self, mode: str) -> None:
         """Enter a mode, whatever was chosen while the mode was not controlled here."""

@@ -18,10 +18,7 @@ from ..services.commands import ask, command
 from ..services.items import FENCE, MISSION, RALLY, Item
 from ..services.missions import upload, verify
 from .footing import LANDED, aside, there
-from .telemetry import Telemetry
-
-HEARING_SECONDS = 2.5
-"""Vehicles tell their heartbeats once a second; one of them may get lost."""
+from .telemetry import HEARING_SECONDS, Telemetry
 
 READY_SECONDS = 120.0
 WORDS_SECONDS = 0.5

@@ -22,6 +22,9 @@ from .readiness import lacks, unlocated
 from .texts import Announcements, Texts
 from .trail import Trail, place_in
 
+HEARING_SECONDS = 2.5
+"""Vehicles tell their heartbeats once a second; one of them may get lost."""
+
 
 class Batteries:
     """Keeps the last report of each battery except the payload's; an observer of the vehicle's link."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 import pytest
 from flight_crew import SPEEDUP, manned, robot_of
 from patience import until
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from resets import reset
 
-from mmrs_mavlink.program import Policy
+from mmrs_mavlink.program import Geographic, Policy
 from mmrs_mavlink.services.uploads import Uploads
+from mmrs_runtime.faults import FaultError
 
 CARRIES_ON = Policy("VEHICLE_RESTARTED", "CONTINUE")
 PATIENT = Policy("LINK_LOST", "RETURN", 60.0)
@@ -60,6 +62,37 @@ def test_a_rover_that_is_being_charged_may_start_anew(on_the_ground):
     restart(made, armed=False)
     made.quiet(2.0 * SPEEDUP)
     assert made.watch.restarted
+
+
+def go_again_and_again(made) -> None:
+    while True:
+        made.vehicle.go_to(Geographic(42.3701, 13.35, 0.0), 1.0, None, False)
+
+
+def test_a_rover_that_refuses_a_speed_since_it_has_restarted_counts_as_restarted():
+    with manned(robot_of(PATIENT, vehicle="rover"), kind="rover") as made:
+        made.vehicle.prepare(Uploads())
+        made.watch.renew()
+        made.watch.moving = True
+        simulated, speeds = made.simulated, []
+        hear = simulated._take
+
+        def refuse_the_last_speed(message):
+            if getattr(message, "command", 0) == mavlink.MAV_CMD_DO_CHANGE_SPEED:
+                speeds.append(message)
+            if len(speeds) < made.link.profile.speed_repeats:
+                hear(message)
+                return
+            simulated.autopilot.aimed = False
+            hear(message)
+            simulated._take = hear
+            reset(simulated)
+
+        grow_old(made)
+        simulated._take = refuse_the_last_speed
+        with pytest.raises(FaultError) as fault:
+            go_again_and_again(made)
+        assert fault.value.event == "VEHICLE_RESTARTED"
 
 
 def test_people_are_told_before_that_carrying_on_counts_on_the_ground_only(on_the_ground):
