@@ -329,6 +329,7 @@ PX4S = (
     _as_px4(_COPTERS["pilot takes over"], happens=((AT_LEG, Pilot(4, 6)),)),
     _as_px4(_COPTERS["satellites lost"], happens=((AT_LEG, Change({"SIM_GPS_USED": 0.0})),)),
     _as_px4(_COPTERS["battery low"], happens=(), parameters={"SIM_BAT_DRAIN": 40.0, "SIM_BAT_MIN_PCT": 5.0}),
+    _as_px4(FENCES[0], happens=((Begun("p1", 0.5), Change({"GF_MAX_HOR_DIST": 33.0})),)),
     *(
         _as_px4(flight, ends=HOME, happens=(*flight.happens[:-1], (Later(12.0), Resume())))
         for flight in _resumes(COPTER)

@@ -75,7 +75,7 @@ OF_MISSIONS: Mapping[str, str] = {
     "Context.emergencyAreas": "rally points",
     "GeoCoordinate": "degrees, and metres above home",
     "Target.name": "is informative",
-    "Start, Stop": "begin and end of the mission",
+    "Start, Stop": "begin and end of the mission; a vehicle that does not land stays armed",
     "GoTo": "NAV_WAYPOINT",
     "GoTo.distance": "a waypoint short of the position",
     "GoTo.speed": "DO_CHANGE_SPEED",
