@@ -90,7 +90,7 @@ def ratios(cost: Cost, ours: Cost) -> str:
 def drawn(count: int, queries: int, seed: int) -> dict:
     """Return obstacles as drawn, the same grown, and where queries begin and end, as JSON."""
     rng = np.random.default_rng((seed, count))
-    shapes = [_ring(rng) for _ in range(count)]
+    shapes = [outline(rng) for _ in range(count)]
     grown = shapely.buffer([shapely.Polygon(ring) for ring in shapes], CLEARANCE + SAFETY)
     side = sqrt(shapely.area(grown).sum() / DENSITY)
     rings = [(ring + rng.uniform(0.0, side, 2)) for ring in shapes]
@@ -111,7 +111,7 @@ def drawn(count: int, queries: int, seed: int) -> dict:
     }
 
 
-def _ring(rng: np.random.Generator) -> np.ndarray:
+def outline(rng: np.random.Generator) -> np.ndarray:
     """Return the corners of an obstacle about the origin: a star or its hull."""
     corners = int(rng.integers(4, 9))
     turns = 2 * np.pi * (np.arange(corners) + rng.uniform(-0.3, 0.3, corners)) / corners

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import sqrt
+from typing import cast
 
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
@@ -88,11 +89,18 @@ def kind_of(input: CheckInput, robot: RobotProgram) -> RobotKind:
 
 
 def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
-    """Return the speeds and altitude limits that the robot's kind gives.
+    """Return the speeds and altitude limits that the robot's kind gives; it is asked once.
 
     Raises:
         MissingFigureError: the kind is unknown, or lacks a figure itself.
     """
+    known = cast(dict[str, Kinematics], input.shared.setdefault(kinematics_of, {}))
+    if robot.id not in known:
+        known[robot.id] = _kinematics(input, robot)
+    return known[robot.id]
+
+
+def _kinematics(input: CheckInput, robot: RobotProgram) -> Kinematics:
     kind = kind_of(input, robot)
     actor = _as_actor(input, robot, kind)
     scene = Scene(

@@ -34,7 +34,7 @@ def printable(words: str) -> str:
     >>> printable("a\x1b[2Jb\u202ec")
     'a\\x1b[2Jb\\u202ec'
     """
-    return "".join(map(_printable, words))
+    return words if words.isprintable() else "".join(map(_printable, words))
 
 
 def one_line(words: str) -> str:

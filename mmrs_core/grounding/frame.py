@@ -17,20 +17,25 @@ REFERENCES: tuple[AltitudeReference, ...] = get_args(AltitudeReference)
 NOWHERE = "GND001"
 """Code of the faults that keep a coordinate from having a place."""
 
+_GEOGRAPHIC = frozenset({(MISSION, "GeoCoordinate"), (BEHAVIOUR, "GeoCoordinate")})
+_RELATIVE = frozenset({(MISSION, "RelativeCoordinate"), (BEHAVIOUR, "RelativeCoordinate")})
+
 Reference: TypeAlias = Callable[[Element], Element | None]
 """The coordinate that a relative one counts from; None: the origin of the frame."""
 
 
 def is_geographic(coordinate: Element) -> bool:
     """Return whether it is a GeoCoordinate of a mission, context or behaviour."""
-    return is_kind(coordinate, MISSION, "GeoCoordinate") or is_kind(coordinate, BEHAVIOUR, "GeoCoordinate")
+    return _is_any(type(coordinate), _GEOGRAPHIC)
 
 
 def is_relative(coordinate: Element) -> bool:
     """Return whether it is a RelativeCoordinate of a mission, context or behaviour."""
-    return is_kind(coordinate, MISSION, "RelativeCoordinate") or is_kind(
-        coordinate, BEHAVIOUR, "RelativeCoordinate"
-    )
+    return _is_any(type(coordinate), _RELATIVE)
+
+
+def _is_any(kind: type[Element], names: frozenset[tuple[str, str]]) -> bool:
+    return kind._mmrs_metaclass is not None and not names.isdisjoint(kind._mmrs_metaclass.ancestry)
 
 
 def on_earth(coordinate: Element) -> bool:
@@ -41,8 +46,12 @@ def on_earth(coordinate: Element) -> bool:
 
 def coordinates_of(root: Element | None) -> Iterator[Element]:
     """Yield all coordinates inside an element, in document order."""
+    known: dict[type[Element], bool] = {}
     for element in descendants(root) if root is not None else ():
-        if is_geographic(element) or is_relative(element):
+        kind = type(element)
+        if kind not in known:
+            known[kind] = _is_any(kind, _GEOGRAPHIC | _RELATIVE)
+        if known[kind]:
             yield element
 
 

@@ -19,6 +19,10 @@ _NOTES = (
 )
 
 
+_MOST_NAMES = 20
+"""Tasks that are named with one reason."""
+
+
 def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
     """Return the plan of a schedule whose states carry all steps."""
     finished = {
@@ -154,18 +158,22 @@ def _control_time(scene: Scene, name: str, spans: Mapping[str, tuple[float, floa
 
 
 def why_idle(team: Team, robot: str) -> str:
-    """Return why no task of the plan is a robot's, task by task; what has one reason is said once."""
+    """Return why no task of the plan is a robot's; a reason is said once, with some of the tasks' names."""
     reasons: dict[str, list[str]] = {}
-    for task in team.scene.tasks:
-        if not is_control(task):
-            reasons.setdefault(_reason(team, task.name, robot), []).append(f"'{task.name}'")
-    return "; ".join(f"{', '.join(tasks)}: {reason}" for reason, tasks in reasons.items())
+    for task in team.groups:
+        reasons.setdefault(_reason(team, task, robot), []).append(task)
+    return "; ".join(f"{_some(tasks)}: {reason}" for reason, tasks in reasons.items())
+
+
+def _some(tasks: Sequence[str]) -> str:
+    more = f" and {len(tasks) - _MOST_NAMES} more" if len(tasks) > _MOST_NAMES else ""
+    return ", ".join(f"'{task}'" for task in tasks[:_MOST_NAMES]) + more
 
 
 def _reason(team: Team, task: str, robot: str) -> str:
     if team.forwards(task, robot) is None:
         return team.refusal(task, robot) or "it cannot do the task"
-    if team.sharers(task) == 1 and len(team.able(task)) > 1 and team.whole(task):
+    if team.whole(task) and len(team.able(task)) > 1:
         return "one robot must do all of it, and the mission ends no later with another one"
     wanted = team.tasks[task].wanted
     others = [name for name in team.able(task) if name not in team.sharing_with(task, robot)]

@@ -19,7 +19,7 @@ def can_compile() -> bool:
 
 
 @cache
-def compiled(module: ModuleType, *, arrays: bool = True) -> Any:
+def compiled(module: ModuleType, *allocating: str) -> Any:
     """Return the functions of a module as attributes: compiled when they are first called, kept on disk.
 
     The module itself keeps its own ones. The first call in an environment takes some ten seconds, the
@@ -27,14 +27,14 @@ def compiled(module: ModuleType, *, arrays: bool = True) -> Any:
 
     Args:
         module: of plain functions.
-        arrays: whether these make arrays, or parts of some; otherwise references to arrays are not counted,
-            which takes most of the time of many short calls.
+        allocating: names of those that make lists or arrays, or parts of some. In the others references to
+            arrays are not counted, which takes most of the time of many short calls.
     """
     njit: Any = import_module("numba").njit
     names = dict(vars(module))
     for name, loop in vars(module).items():
         if isinstance(loop, FunctionType) and loop.__module__ == module.__name__:
-            names[name] = njit(cache=True, _nrt=arrays)(
+            names[name] = njit(cache=True, _nrt=name in allocating)(
                 FunctionType(loop.__code__, names, name, loop.__defaults__)
             )
     return SimpleNamespace(**{name: names[name] for name in vars(module)})

@@ -146,6 +146,8 @@ _Group: TypeAlias = tuple[int, Sequence[ShareCandidate]]
 class MixedFilling:
     """Fills robots sort by sort: each does what it can by a time, the last one all that the others leave."""
 
+    alone = False
+
     def __init__(
         self, mixture: Mixture, groups: Sequence[_Group], *, ahead: bool, everyone: bool = False
     ) -> None:

@@ -72,6 +72,8 @@ class Space:
         return self._obstacles.names(self._blockers(polyline, spare=0.0))
 
     def _blockers(self, polyline: Sequence[Position], *, spare: float = EPSILON / 2) -> Flags:
+        if self.empty:
+            return np.zeros(0, np.bool_)
         found = self._obstacles.blocking(legs_of(polyline), spare=spare)
         flags: Flags = np.logical_or.reduce(found, axis=0)
         return flags

@@ -91,7 +91,7 @@ def loops_for(field: Field, module: ModuleType) -> tuple[Any, Field, bool]:
     """Return the functions of a module, a field as they take it, and whether they take lists, not arrays."""
     n, arrays = field.sizes[0], tuple[Any, ...](field)
     if n >= _MANY and can_compile():
-        return compiled(module, arrays=False), field, False
+        return compiled(module), field, False
     return module, Field(*(each.tolist() for each in arrays)) if n <= _DENSE else field, True
 
 

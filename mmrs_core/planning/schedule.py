@@ -14,7 +14,7 @@ from mmrs_core.planning.mixing import MixedFilling, mixes
 from mmrs_core.planning.sharing import Filling, ShareCandidate, Sharing, earliest, fillings
 from mmrs_core.planning.states import Bounds, Ready, State
 from mmrs_core.planning.team import Team
-from mmrs_core.planning.turns import JobResult, States, TurnShare, in_turns, turn_of
+from mmrs_core.planning.turns import JobResult, TurnShare, in_turns, turn_of
 from mmrs_core.scene import Task
 
 _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
@@ -105,7 +105,7 @@ class _Scheduling:
     def __init__(self, team: Team, decisions: Decisions, record: bool) -> None:
         self._team, self._decisions, self._record = team, decisions, record
         self._tasks = {task.name: task for task in team.scene.tasks}
-        self._states: States = {
+        self._states: dict[str, State] = {
             name: team.starts.setdefault((name, delay), pilot.start(delay))
             for name, pilot in team.pilots.items()
             for delay in (decisions.delays.get(name, 0.0),)
@@ -140,7 +140,7 @@ class _Scheduling:
         done = self._chosen_or_shared(job) if self._record else self._remembered(job)
         if done is None:
             return False
-        self._states = {**self._states, **done.states}
+        self._states.update(done.states)
         self._ends[job.name], self._bounds[job.name] = done.ends, done.bounds
         self._spans[job.name] = (done.begin, max(done.ends.values()))
         self._busy |= done.ends.keys()

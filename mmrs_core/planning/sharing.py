@@ -85,9 +85,11 @@ class Filling(Protocol):
 
     Attributes:
         begin: seconds at which the first of them would set out.
+        alone: whether there is one robot only, whose share is the work.
     """
 
     begin: float
+    alone: bool
 
     def shares(self, limit: float) -> Sequence[Share]:
         """Return shares of all the work after which robots are back by a time; none if they cannot be."""
@@ -102,7 +104,7 @@ def earliest(filling: Filling, limit: float = inf) -> Sharing | None:
     if not found:
         return None
     low, back = filling.begin, _back(found)
-    for _ in range(_HALVINGS):
+    for _ in range(0 if filling.alone else _HALVINGS):
         if back - low <= _CLOSE * back:
             break
         middle = (low + back) / 2
@@ -146,7 +148,7 @@ class RowFilling:
 
     def __init__(self, order: Sequence[ShareCandidate], *, everyone: bool) -> None:
         """Make it for robots in one order, each of which must have a share or not."""
-        self._order, self._everyone = order, everyone
+        self._order, self._everyone, self.alone = order, everyone, len(order) == 1
         self.begin = min(candidate.state.time for candidate in order)
         self.portions = len(order[0].forwards)
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import MutableSequence, Sequence
 from heapq import heappop, heappush
-from math import asin, atan2, inf, pi, sqrt
+from math import asin, atan2, floor, inf, pi, sqrt
 from typing import NamedTuple
 
 LEFT, RIGHT = 0, 1
@@ -23,7 +23,7 @@ START, UNKNOWN = -1, -1
 NONE, FULL = -1.0, -2.0
 """What `search` returns instead of a length: there is no path; the memory has to be enlarged."""
 
-_DIRECTIONS, _BINS = 256, 8
+DIRECTIONS, _BINS = 256, 8
 """Bins of directions all around a place, and within a corner's wedge."""
 
 _TINY = 1e-9
@@ -70,7 +70,7 @@ class Columns(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What was seen from nodes among areas that block, and room for one search.
+    """What was seen from nodes among areas that block, and room for one search and its looks.
 
     Attributes:
         blocks: by area, whether it blocks.
@@ -78,6 +78,11 @@ class Memory(NamedTuple):
         node, metres: what is seen: nodes, and how far away.
         used: (1,) how many of these there are.
         met: by area, the number of the look that met it last; the last item counts looks.
+        blocked: by bin of directions, metres from which on a look finds it blocked.
+        areas: that a look meets.
+        look_node, look_metres: by node, what a look sees.
+        best: by node, and for the goal last, metres from the start.
+        came: likewise, the node before, START for the first.
     """
 
     blocks: Sequence[bool]
@@ -87,6 +92,12 @@ class Memory(NamedTuple):
     metres: MutableSequence[float]
     used: MutableSequence[int]
     met: MutableSequence[int]
+    blocked: MutableSequence[float]
+    areas: MutableSequence[int]
+    look_node: MutableSequence[int]
+    look_metres: MutableSequence[float]
+    best: MutableSequence[float]
+    came: MutableSequence[int]
 
 
 def search(
@@ -98,10 +109,8 @@ def search(
     goal_y: float,
     longest: float,
     spare: float,
-    best: MutableSequence[float],
-    came: MutableSequence[int],
 ) -> float:
-    """Return the metres of the shortest path; NONE or FULL where there is none.
+    """Return the metres of the shortest path, left in the memory; NONE or FULL where there is none.
 
     Args:
         c: the areas.
@@ -109,10 +118,11 @@ def search(
         start_x, start_y, goal_x, goal_y: ends of the path.
         longest: metres beyond which a path is of no use.
         spare: metres to keep on top of clearances.
-        best: (nodes + 1,) inf; will hold metres from the start, with the goal last.
-        came: (nodes + 1,) will hold the node before, START for the first.
     """
+    best, came = memory.best, memory.came
     goal = len(best) - 1
+    for i in range(len(best)):
+        best[i] = inf
     straight = sqrt((goal_x - start_x) ** 2 + (goal_y - start_y) ** 2)
     if straight > longest:
         return NONE
@@ -120,11 +130,12 @@ def search(
         best[goal], came[goal] = straight, START
         return straight
     to_goal = {-2: 0.0}
-    for node, metres in _look(c, memory, goal_x, goal_y, -1, spare):
-        to_goal[node ^ 1] = metres
+    for i in range(_look(c, memory, goal_x, goal_y, -1, spare)):
+        to_goal[memory.look_node[i] ^ 1] = memory.look_metres[i]
     queue = [(0.0, -2)]
     queue.pop()
-    for node, metres in _look(c, memory, start_x, start_y, -1, spare):
+    for i in range(_look(c, memory, start_x, start_y, -1, spare)):
+        node, metres = memory.look_node[i], memory.look_metres[i]
         best[node], came[node] = metres, START
         k = node // 2
         heappush(queue, (metres + sqrt((goal_x - c.x[k]) ** 2 + (goal_y - c.y[k]) ** 2), node))
@@ -144,13 +155,12 @@ def search(
         if memory.seen[node] == UNKNOWN:
             found = _look(c, memory, c.x[k], c.y[k], node, spare)
             used = memory.used[0]
-            if used + len(found) > len(memory.node):
+            if used + found > len(memory.node):
                 return FULL
-            memory.seen_from[node], memory.seen[node] = used, len(found)
-            for other, metres in found:
-                memory.node[used], memory.metres[used] = other, metres
-                used += 1
-            memory.used[0] = used
+            memory.seen_from[node], memory.seen[node] = used, found
+            for i in range(found):
+                memory.node[used + i], memory.metres[used + i] = memory.look_node[i], memory.look_metres[i]
+            memory.used[0] = used + found
         first = memory.seen_from[node]
         for i in range(first, first + memory.seen[node]):
             other = memory.node[i]
@@ -164,8 +174,8 @@ def search(
     return NONE
 
 
-def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: float) -> list[tuple[int, float]]:
-    """Return the nodes seen from a place, and their distances.
+def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: float) -> int:
+    """Look for the nodes seen from a place and how far away they are; return how many there are.
 
     What is looked into is cut into bins of directions. An area that takes up a bin as a whole blocks it
     from its furthest corner on; cells and areas all of whose bins are blocked before them are left out.
@@ -177,31 +187,34 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
         node: which node that is; -1: none, all directions are looked into.
         spare: metres to keep on top of clearances.
     """
-    bins, base_x, base_y, width = _DIRECTIONS, 1.0, 0.0, 2.0 * pi / _DIRECTIONS
-    own = node // 2
+    bins, base_x, base_y, width = DIRECTIONS, 1.0, 0.0, 2.0 * pi / DIRECTIONS
+    own, reach = node // 2, 0.75 * c.cell
+    left_x = left_y = right_x = right_y = 0.0
     if node >= 0:
         base_x, base_y, to_x, to_y = -c.before_x[own], -c.before_y[own], c.after_x[own], c.after_y[own]
         if node % 2 == RIGHT:
             base_x, base_y = -base_x, -base_y
             to_x, to_y = -to_x, -to_y
         bins, width = _BINS, max(_angle(base_x, base_y, to_x, to_y) / _BINS, 1e-6)
-    blocked = [inf for _ in range(bins)]
+        one, two = sqrt(base_x * base_x + base_y * base_y), sqrt(to_x * to_x + to_y * to_y)
+        right_x, right_y, left_x, left_y = base_x / one, base_y / one, to_x / two, to_y / two
+    blocked = memory.blocked
+    for i in range(bins):
+        blocked[i] = inf
     memory.met[-1] += 1
-    look = memory.met[-1]
-    areas, seen = [0], [(0, 0.0)]
-    areas.pop()
-    seen.pop()
-    column, row = int((x - c.origin_x) // c.cell), int((y - c.origin_y) // c.cell)
+    look, areas, seen = memory.met[-1], 0, 0
+    column, row = floor((x - c.origin_x) / c.cell), floor((y - c.origin_y) / c.cell)
     ring = max(0, -column, column - c.columns + 1, -row, row - c.rows + 1)
     last = max(column, c.columns - 1 - column, row, c.rows - 1 - row)
-    while ring <= last and max(blocked) > (ring - 1) * c.cell:
+    while ring <= last and _open(blocked, bins, (ring - 1) * c.cell):
         for i in range(max(0, column - ring), min(c.columns - 1, column + ring) + 1):
             step = 1 if abs(i - column) == ring else max(1, 2 * ring)
             for j in range(row - ring, row + ring + 1, step):
                 if j < 0 or j >= c.rows:
                     continue
                 to_x, to_y = c.origin_x + (i + 0.5) * c.cell - x, c.origin_y + (j + 0.5) * c.cell - y
-                if _hidden(blocked, node < 0, base_x, base_y, width, to_x, to_y, 0.75 * c.cell):
+                beside = min(right_x * to_y - right_y * to_x, left_y * to_x - left_x * to_y) < -reach
+                if beside or _hidden(blocked, bins, base_x, base_y, width, to_x, to_y, reach):
                     continue
                 cell = j * c.columns + i
                 for item in range(c.cells_from[cell], c.cells_from[cell + 1]):
@@ -213,22 +226,31 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
                     to_y = (c.south[area] + c.north[area]) / 2.0 - y
                     wide, high = c.east[area] - c.west[area], c.north[area] - c.south[area]
                     radius = sqrt(wide * wide + high * high) / 2.0
-                    if not _hidden(blocked, node < 0, base_x, base_y, width, to_x, to_y, radius):
-                        areas.append(area)
-                        _meet(c, area, x, y, node, base_x, base_y, width, blocked, seen)
+                    if not _hidden(blocked, bins, base_x, base_y, width, to_x, to_y, radius):
+                        memory.areas[areas] = area
+                        areas += 1
+                        seen = _meet(c, memory, area, x, y, node, base_x, base_y, width, bins, seen)
         ring += 1
-    found = [(0, 0.0)]
-    found.pop()
-    for other, metres in seen:
-        k = other // 2
-        if _hidden(blocked, node < 0, base_x, base_y, width, c.x[k] - x, c.y[k] - y, _MARGIN):
+    found = 0
+    for i in range(seen):
+        k = memory.look_node[i] // 2
+        if _hidden(blocked, bins, base_x, base_y, width, c.x[k] - x, c.y[k] - y, _MARGIN):
             continue
-        for area in areas:
-            if _crosses(c, area, x, y, c.x[k], c.y[k], spare):
-                break
-        else:
-            found.append((other, metres))
+        j = 0
+        while j < areas and not _crosses(c, memory.areas[j], x, y, c.x[k], c.y[k], spare):
+            j += 1
+        if j == areas:
+            memory.look_node[found], memory.look_metres[found] = memory.look_node[i], memory.look_metres[i]
+            found += 1
     return found
+
+
+def _open(blocked: Sequence[float], bins: int, metres: float) -> bool:
+    """Return whether some bin is not blocked up to so many metres."""
+    i = 0
+    while i < bins and blocked[i] <= metres:
+        i += 1
+    return i < bins
 
 
 def _angle(x: float, y: float, to_x: float, to_y: float) -> float:
@@ -238,7 +260,7 @@ def _angle(x: float, y: float, to_x: float, to_y: float) -> float:
 
 def _hidden(
     blocked: Sequence[float],
-    around: bool,
+    bins: int,
     base_x: float,
     base_y: float,
     width: float,
@@ -251,9 +273,8 @@ def _hidden(
     if metres <= radius:
         return False
     middle, spread = _angle(base_x, base_y, to_x, to_y), asin(radius / metres)
-    first, last = int((middle - spread) // width), int((middle + spread) // width)
-    bins = len(blocked)
-    if not around:
+    first, last = floor((middle - spread) / width), floor((middle + spread) / width)
+    if bins < DIRECTIONS:
         first, last = max(first, 0), min(last, bins - 1)
     i = first
     while i <= last and blocked[i % bins] <= metres - radius:
@@ -263,6 +284,7 @@ def _hidden(
 
 def _meet(
     c: Columns,
+    memory: Memory,
     area: int,
     x: float,
     y: float,
@@ -270,12 +292,13 @@ def _meet(
     base_x: float,
     base_y: float,
     width: float,
-    blocked: MutableSequence[float],
-    seen: list[tuple[int, float]],
-) -> None:
-    """Add the nodes at which lines from a place touch an area; note which bins it blocks.
+    bins: int,
+    seen: int,
+) -> int:
+    """Add the nodes at which lines from a place touch an area; return how many are seen.
 
-    An end of a path may lie in the rim between an area's two shapes; from there, lines to any corner count.
+    Note which bins the area blocks. An end of a path may lie in the rim between an area's two shapes; from
+    there, lines to any corner count.
     """
     own, side = node // 2, node % 2
     inside = c.west[area] <= x <= c.east[area] and c.south[area] <= y <= c.north[area]
@@ -306,22 +329,24 @@ def _meet(
             if side == RIGHT and max(from_one, from_two) > tiny:
                 continue
         if in_rim or min(one, two) >= -tiny:
-            seen.append((2 * k + LEFT, metres))
+            memory.look_node[seen], memory.look_metres[seen] = 2 * k + LEFT, metres
+            seen += 1
         if in_rim or max(one, two) <= tiny:
-            seen.append((2 * k + RIGHT, metres))
+            memory.look_node[seen], memory.look_metres[seen] = 2 * k + RIGHT, metres
+            seen += 1
     if inside:
-        return
+        return seen
     furthest = sqrt(furthest)
     low = _angle(base_x, base_y, low_x, low_y)
     high = low + _angle(low_x, low_y, high_x, high_y)
     low += _MARGIN / sqrt(low_x * low_x + low_y * low_y)
     high -= _MARGIN / sqrt(high_x * high_x + high_y * high_y)
-    first, last = int(low // width) + 1, int(high // width) - 1
-    bins = len(blocked)
+    first, last = floor(low / width) + 1, floor(high / width) - 1
     if node >= 0:
         first, last = max(first, 0), min(last, bins - 1)
     for i in range(first, last + 1):
-        blocked[i % bins] = min(blocked[i % bins], furthest)
+        memory.blocked[i % bins] = min(memory.blocked[i % bins], furthest)
+    return seen
 
 
 def _clear(c: Columns, memory: Memory, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:

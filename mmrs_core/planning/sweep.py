@@ -44,7 +44,11 @@ def overlapping(
     lasting = np.minimum(times[:, 1], until) - np.maximum(times[:, 0], since)
     slot = max(float(lasting.mean()), (until - since) / 1e6, 1e-6)
     last_slot = int((until - since) // slot)
-    codes_of = compiled(box_pairs).overlapping_codes if len(owners) >= _MANY and can_compile() else _codes
+    codes_of = (
+        compiled(box_pairs, "overlapping_codes").overlapping_codes
+        if len(owners) >= _MANY and can_compile()
+        else _codes
+    )
     codes = codes_of(owners, times, least, places, reach, moved, since, slot, last_slot)
     first, second = np.divmod(np.unique(codes), len(owners))
     return first, second

@@ -14,7 +14,7 @@ from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.planning import sight
 from mmrs_core.planning.compilation import can_compile, compiled
 from mmrs_core.planning.obstacles import Flags, Floats, Obstacles, outlines_of
-from mmrs_core.planning.sight import FULL, NONE, START, UNKNOWN, Columns, Memory
+from mmrs_core.planning.sight import DIRECTIONS, FULL, NONE, START, UNKNOWN, Columns, Memory
 
 Place: TypeAlias = tuple[float, float]
 
@@ -32,6 +32,7 @@ class Visibility:
         self._obstacles = obstacles
         self._compiled = len(obstacles) >= _MANY and can_compile()
         self._columns: Columns | None = None
+        self._room: tuple[Any, ...] = ()
         self._memories: dict[bytes, Memory] = {}
         self._rows: dict[tuple[Place, int], Flags] = {}
         self._pairs: dict[tuple[Place, Place], Flags] = {}
@@ -49,31 +50,30 @@ class Visibility:
         """
         if self._columns is None:
             self._columns = columns_of(self._obstacles, self._column)
+            self._room = _room_among(self._columns, self._column)
         columns, nodes = self._columns, 2 * len(self._columns.x)
         memory = self._memory(blocks, nodes)
-        search, column = compiled(sight).search if self._compiled else sight.search, self._column
-        best, came = column(np.full(nodes + 1, inf)), column(np.full(nodes + 1, START))
-        metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, best, came)
+        search = compiled(sight, "search").search if self._compiled else sight.search
+        metres = search(columns, memory, *start, *goal, longest, EPSILON / 2)
         while metres == FULL:
             memory = self._memories[blocks.tobytes()] = self._enlarged(memory)
-            best, came = column(np.full(nodes + 1, inf)), column(np.full(nodes + 1, START))
-            metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, best, came)
+            metres = search(columns, memory, *start, *goal, longest, EPSILON / 2)
         if metres == NONE:
             return None
-        path, node = [goal], int(came[nodes])
+        path, node = [goal], int(memory.came[nodes])
         while node != START:
             path.append((float(columns.x[node // 2]), float(columns.y[node // 2])))
-            node = int(came[node])
+            node = int(memory.came[node])
         return [start, *reversed(path)]
 
     def _memory(self, blocks: Flags, nodes: int) -> Memory:
         key = blocks.tobytes()
-        memory = self._memories.get(key)
+        memory = self._memories.pop(key, None)
         if memory is None:
             if len(self._memories) == _SETS:
                 del self._memories[next(iter(self._memories))]
             column = self._column
-            memory = self._memories[key] = Memory(
+            memory = Memory(
                 column(blocks),
                 column(np.zeros(nodes, np.int64)),
                 column(np.full(nodes, UNKNOWN)),
@@ -81,7 +81,9 @@ class Visibility:
                 column(np.zeros(nodes)),
                 column(np.zeros(1, np.int64)),
                 column(np.zeros(len(blocks) + 1, np.int64)),
+                *self._room,
             )
+        self._memories[key] = memory  # the last one used is the last to go
         return memory
 
     def _enlarged(self, memory: Memory) -> Memory:
@@ -111,6 +113,13 @@ class Visibility:
         if flags is None:
             flags = self._pairs[one, two] = self._obstacles.crossed(np.array([[one, two]]))[0]
         return flags
+
+
+def _room_among(columns: Columns, column: Callable[[NDArray[Any]], Any]) -> tuple[Any, ...]:
+    """Return the last fields of `Memory`, from `blocked` on, which all searches share."""
+    areas, nodes = len(columns.clearance), 2 * len(columns.x)
+    looks = (np.zeros(DIRECTIONS), np.zeros(areas, np.int64), np.zeros(nodes, np.int64), np.zeros(nodes))
+    return tuple(map(column, (*looks, np.zeros(nodes + 1), np.zeros(nodes + 1, np.int64))))
 
 
 def columns_of(obstacles: Obstacles, column: Callable[[NDArray[Any]], Any]) -> Columns:

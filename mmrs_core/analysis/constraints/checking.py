@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from mmrs_core.analysis.constraints.sketch import remembering
-from mmrs_core.analysis.constraints.unread import noting, watching
+from mmrs_core.analysis.constraints.unread import ReadNote, watching
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InternalError, PluginError
@@ -116,7 +116,7 @@ def _refuse_misspelt(constraint: Constraint, registry: Registry) -> None:
 def _breaches(constraint: Constraint, element: Element, models: ModelSet) -> Sequence[Finding]:
     """Return the breaches by an element; none where they would follow from what could not be read."""
     try:
-        with noting() as reading:
+        with ReadNote() as reading:
             found = tuple(constraint.check(element, models))
         return () if reading.is_unfounded else found
     except PluginError as error:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from inspect import getattr_static
 from typing import Any, Generic, TypeVar, overload
 
@@ -16,25 +15,27 @@ Owner = TypeVar("Owner")
 Value = TypeVar("Value")
 
 
-@dataclass(slots=True)
 class ReadNote:
-    """Whether what was read since it began has been a feature whose value could not be read from its file."""
+    """Notes whether watched features are read while it is entered; an outer note knows nothing of it.
 
-    is_unfounded: bool = False
+    Attributes:
+        is_unfounded: whether one was whose value could not be read from its file.
+    """
+
+    __slots__ = ("_token", "is_unfounded")
+
+    def __enter__(self) -> ReadNote:
+        """Begin to note."""
+        self.is_unfounded = False
+        self._token = _reading.set(self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End."""
+        _reading.reset(self._token)
 
 
 _reading: ContextVar[ReadNote | None] = ContextVar("reading", default=None)
-
-
-@contextmanager
-def noting() -> Iterator[ReadNote]:
-    """Note whether watched features are read; an outer note knows nothing of it."""
-    reading = ReadNote()
-    token = _reading.set(reading)
-    try:
-        yield reading
-    finally:
-        _reading.reset(token)
 
 
 def _note() -> None:
@@ -123,7 +124,7 @@ class drawn_once(Generic[Owner, Value]):  # noqa: N801  # it is used as `cached_
             return self
         name = f"{self._make.__name__} as drawn"
         if name not in owner.__dict__:
-            with noting() as reading:
+            with ReadNote() as reading:
                 owner.__dict__[name] = self._make(owner), reading
         found: tuple[Value, ReadNote] = owner.__dict__[name]
         if found[1].is_unfounded:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from mmrs_core.analysis.constraints.unread import noting, watching
+from mmrs_core.analysis.constraints.unread import ReadNote, watching
 from mmrs_core.errors import PluginError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import robot as rl
@@ -134,7 +134,7 @@ def test_attributes_of_a_subclass_are_its_own_and_no_features():
 
 def test_what_could_not_be_read_of_them_is_known(registry):
     made = registry.create("urn:mmrs:behaviour:1.0", "GoTo", distance=2.0)
-    with watching([(made, "distance")]), noting() as reading:
+    with watching([(made, "distance")]), ReadNote() as reading:
         assert made.twice == 4.0
     assert reading.is_unfounded
     assert isinstance(made, Leg)
