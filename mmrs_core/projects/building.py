@@ -4,35 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature, Role
+from mmrs_core.drawings.drawing import Geometry, MapFeature, Role
 from mmrs_core.grounding.features import child, children
 from mmrs_core.languages.element import Element, descendants, is_kind, label_of, metaclass_of
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.naming import unreadable
-from mmrs_core.projects.attributes import asked_values, decided, drawn_values, missing, named_in, set_values
+from mmrs_core.projects.attributes import asked_values, drawn_values, missing, named_in, set_values
 from mmrs_core.projects.choosing import Decision, quoted, shape_of
-from mmrs_core.projects.heights import Levels
 from mmrs_core.projects.kinds import MISSION, Kind, refers
 from mmrs_core.projects.likeness import DrawnElements, differences
-from mmrs_core.projects.shapes import DECIMALS, DrawnShape, Floats, UnfitError, around, begin_of, shape
+from mmrs_core.projects.placing import SHUT, Basis, Placing
+from mmrs_core.projects.shapes import Floats, UnfitError
 
 if TYPE_CHECKING:
-    from pyproj import Transformer
-
     from mmrs_core.languages.registry import Registry
 
 LONGEST_NAME = 80
-_SHUT = ("forbiddenAreas", "obstacles")
-
-RALLY_RADIUS = 10.0
-"""Metres around a point that is to be an emergency area, of which clearances leave something."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,32 +74,11 @@ class UniqueNames:
         return found
 
 
-@dataclass(frozen=True, slots=True)
-class Basis:
-    """What all elements of an import share.
-
-    Attributes:
-        levels: what heights count from.
-        altitude: height above the origin of tasks that are drawn without one, metres.
-        flies: whether a robot of the team does; otherwise such tasks are on the ground.
-        tolerance: of simplified borders, metres.
-        home: latitude and longitude of the first robot's home; None without robots.
-        crs: of the coordinates of the mission, and of the context.
-    """
-
-    levels: Levels
-    altitude: float
-    flies: bool
-    tolerance: float | None
-    home: Floats | None
-    crs: Mapping[str, str]
-
-
 class Builder:
     """Makes elements, and puts them into a mission and its context."""
 
     def __init__(
-        self, mission: Element, context: Element, registry: Registry, names: UniqueNames, around: Basis
+        self, mission: Element, context: Element, registry: Registry, names: UniqueNames, basis: Basis
     ) -> None:
         self.faults: dict[str, None] = {}
         self.comments: dict[Element, str] = {}
@@ -117,11 +89,12 @@ class Builder:
         self._context = context
         self._registry = registry
         self._names = names
-        self._around = around
+        self._basis = basis
         self._drawn = DrawnElements(mission, context)
-        shut = [each for name in _SHUT for each in children(context, name)]
+        shut = [each for name in SHUT for each in children(context, name)]
         rings = [self._drawn.positions(each) for each in shut]
-        self._closed = [np.array(ring, float) for ring in rings if len(ring) > 2 and (None, None) not in ring]
+        closed = [np.array(ring, float) for ring in rings if len(ring) > 2 and (None, None) not in ring]
+        self.placing = Placing(registry, basis, closed)
 
     def build(self, feature: MapFeature, decision: Decision) -> Outcome:
         """Add the element of a feature; return what became of it."""
@@ -140,15 +113,15 @@ class Builder:
             return self._refer(feature, decision, told)
         attributes = dict(decision.attributes)
         try:
-            found = self._shape(feature, kind, attributes)
+            found = self.placing.shape(feature, kind, attributes)
         except UnfitError as unfit:
             self.refuse_open(kind, feature.place, repr(feature.name[:LONGEST_NAME]), str(unfit), feature.name)
             return replace(told, reason=str(unfit))
         element, given, doubts = self._made(feature, decision, attributes)
         notes = [*decision.notes, *found.notes, *doubts]
         exported = feature.role is Role.TASK and feature.properties.get("type") == kind.name
-        heights = self._heights(element, kind, found, given, notes, usual=not exported)
-        self._place(element, kind, found, heights, notes)
+        heights = self.placing.heights(element, kind, found, given, notes, usual=not exported)
+        self.placing.place(element, kind, found, heights, notes)
         for other in self._drawn.alike(element, feature.name, area=found.geometry is Geometry.AREA):
             called = label_of(other) or "an element without a name"
             # one drawing may have a shape twice, for different tasks
@@ -265,7 +238,7 @@ class Builder:
 
     def refuse_open(self, kind: Kind, place: Place, what: str, reason: str, name: str) -> None:
         """Note the fault of something to keep clear of that robots would enter, since it is left out."""
-        if kind.feature in _SHUT:
+        if kind.feature in SHUT:
             ways = f"--as {quoted(name)}=ignore leaves it out"
             self.faults[f"{place}: {kind.name} {what}: {reason}; {ways}"] = None
 
@@ -273,14 +246,14 @@ class Builder:
         """Add a robot to the team; the home of the first one has the altitude of the origin."""
         team = child(self._roots["tasks"], "team")
         assert team is not None  # a mission that can be read, or a new one
-        levels, up = self._around.levels, 0.0
+        levels, up = self._basis.levels, 0.0
         if (
             feature is not None
             and feature.heights
             and (base := levels.above_origin(feature.reference)) is not None
         ):
             up = float(feature.heights[0][0]) + base
-        home = self.coordinate(*position, up)
+        home = self.placing.coordinate(*position, up)
         if not up and levels.reference != "ORIGIN":
             home.altitude = levels.origin  # type: ignore[attr-defined]  # a coordinate of the Earth
         robot.home = home  # type: ignore[attr-defined]  # a robot
@@ -295,18 +268,6 @@ class Builder:
         self._roots["tasks"].taskDependencies.append(dependency)  # type: ignore[attr-defined]  # a mission
         self.added.setdefault("taskDependencies", []).append(dependency)
 
-    def coordinate(self, latitude: float, longitude: float, up: float = 0.0, of: str = "tasks") -> Element:
-        """Return a coordinate in the crs of the mission, or of the context."""
-        latitude, longitude = in_crs(latitude, longitude, self._around.crs[of])
-        altitude = self._around.levels.altitude(up) if up else None
-        return self._registry.create(
-            MISSION,
-            "GeoCoordinate",
-            latitude=round(latitude, DECIMALS),
-            longitude=round(longitude, DECIMALS),
-            altitude=altitude,
-        )
-
     def _root(self, kind: Kind) -> Element:
         return self._roots.get(kind.feature, self._context)
 
@@ -317,132 +278,10 @@ class Builder:
         path = f"/{kind.feature}[{len(siblings) - 1}]"
         if kind.feature == "tasks":
             self.tasks[path] = element
-        if kind.feature in _SHUT:
-            self._closed.append(outer)
+        if kind.feature in SHUT:
+            self.placing.closed.append(outer)
         self.added.setdefault(kind.feature, []).append(element)
         return path
-
-    def _shape(self, feature: MapFeature, kind: Kind, attributes: dict[str, tuple[str, ...]]) -> DrawnShape:
-        """Return the positions of the element; the attributes lose the radius around points and lines."""
-        drawn = shape_of(feature)
-        if not kind.surrounds or feature.geometry is Geometry.AREA:
-            found = shape(
-                feature,
-                drawn if drawn in kind.shapes else feature.geometry,
-                self._around.tolerance,
-                covering=kind.feature in _SHUT,
-            )
-            if kind.surrounds and len(found.rings) > 1:
-                if kind.feature == "emergencyAreas":
-                    raise UnfitError("an emergency area cannot have holes: draw it without them")
-                notes = (*found.notes, f"a {kind.name} has no holes: these are closed, too")
-                return DrawnShape(found.geometry, found.rings[:1], found.heights, found.reference, notes)
-            return found
-        shape(feature, feature.geometry, None)  # is it on the Earth?
-        texts = attributes.pop("radius", ()) or (str(feature.radius or feature.properties.get("radius", "")),)
-        emergency = kind.feature == "emergencyAreas"
-        if not texts[-1] and not emergency:
-            word = "obstacle" if kind.name == "obstacle" else "forbidden"
-            advice = f"--as {quoted(feature.name)}={word}:radius=METRES"
-            raise UnfitError(f"a {feature.geometry.value} has no extent; {advice} gives it one")
-        try:
-            radius = float(texts[-1]) if texts[-1] else RALLY_RADIUS
-        except ValueError:
-            raise UnfitError(f"radius {texts[-1][:20]}: not a number of metres") from None
-        ring = around(feature, radius, covering=not emergency)
-        top = feature.heights[0].max().repeat(len(ring)) if feature.heights else None
-        return DrawnShape(Geometry.AREA, (ring,), top, feature.reference, (f"{radius:g} m around it",))
-
-    def _heights(
-        self,
-        element: Element,
-        kind: Kind,
-        found: DrawnShape,
-        given: Mapping[str, object],
-        notes: list[str],
-        *,
-        usual: bool,
-    ) -> Floats | None:
-        """Set the height of an element; return the heights of its coordinates, if they have any.
-
-        Args:
-            usual: whether it has the usual height where it has none.
-        """
-        ups = self._settled(found, notes)
-        usual = usual or (ups is None and found.heights is not None and bool(found.heights.any()))
-        if kind.feature == "obstacles":
-            if ups is not None and "maxHeight" not in given:
-                element.maxHeight = round(float(ups.max()), 3)  # type: ignore[attr-defined]  # obstacles have one
-            if getattr(element, "maxHeight", None) is None:
-                notes.append("without a height, it is closed at every height")
-            return None
-        if kind.feature != "tasks":
-            if ups is not None and kind.surrounds:
-                notes.append(
-                    "it is closed at every height"
-                    if kind.name == "forbidden area"
-                    else "its height is left out"
-                )
-            return None if kind.surrounds else ups
-        name = kind.symbol.height if kind.symbol is not None else ""
-        height = self._around.altitude if self._around.flies and usual else 0.0
-        settled = name in decided(kind, given) or (ups is None and not usual)
-        optional = not name or settled or not metaclass_of(element).feature(name).required
-        has_own = found.geometry is not Geometry.AREA
-        writable = self._around.levels.altitude(height) is not None
-        if has_own and ups is not None and optional and writable:
-            return ups
-        if name and not settled and getattr(element, name) is None:
-            setattr(element, name, round(float(ups.max()), 3) if ups is not None else height)
-        elif not name and has_own and (height or ups is not None):
-            if writable:
-                return np.full(len(found.rings[0]), height)
-            notes.append("its height is left out: that of the origin is not known")
-        return None
-
-    def _settled(self, found: DrawnShape, notes: list[str]) -> Floats | None:
-        """Return heights above the origin; None where there are none, or they are all on the ground."""
-        if found.heights is None:
-            return None
-        base = self._around.levels.above_origin(found.reference)
-        if base is None:
-            if found.heights.any():
-                words = f"heights above {found.reference.value} are left out"
-                notes.append(f"{words}: that of the origin is not known")
-            return None
-        ups = found.heights + base
-        on_ground = found.reference in (HeightReference.GROUND, HeightReference.HOME) and not ups.any()
-        return None if on_ground or not np.isfinite(ups).all() else ups
-
-    def _place(
-        self, element: Element, kind: Kind, found: DrawnShape, ups: Floats | None, notes: list[str]
-    ) -> None:
-        metaclass = metaclass_of(element)
-        at = kind.shapes[found.geometry]
-        of = "tasks" if kind.feature == "tasks" else "context"
-        outer = found.rings[0]
-        made = [
-            self.coordinate(float(latitude), float(longitude), 0.0 if ups is None else float(ups[number]), of)
-            for number, (latitude, longitude) in enumerate(outer)
-        ]
-        if at.many and at.most > 0 and len(made) > at.most:
-            notes.append(f"{kind.name} takes {at.most} positions, so only the first and the last are used")
-            made = [made[0], made[-1]]
-        setattr(element, at.attribute, made if at.many else made[0])
-        if "initialPosition" in metaclass.by_name:
-            first = begin_of(outer, self._around.home, self._closed) if found.geometry is Geometry.AREA else 0
-            up = 0.0 if ups is None else float(ups[first])
-            element.initialPosition = self.coordinate(float(outer[first][0]), float(outer[first][1]), up, of)  # type: ignore[attr-defined]
-        if len(found.rings) > 1 and "holes" in metaclass.by_name:
-            holes = metaclass.by_name["holes"]
-            assert isinstance(holes.type, Metaclass)  # rings
-            for ring in found.rings[1:]:
-                points = [self.coordinate(float(each[0]), float(each[1]), 0.0, of) for each in ring]
-                getattr(element, holes.attribute).append(
-                    self._registry.create(*holes.type.key, points=points)
-                )
-        elif len(found.rings) > 1:
-            notes.append(f"{kind.name} has no holes: these are left out")
 
 
 def _who(feature: MapFeature) -> str:
@@ -456,21 +295,6 @@ def comment_of(feature: MapFeature) -> str:
     place = f"{Path(feature.place.file).name}, line {feature.place.line}" if feature.place.line else ""
     path = " / ".join((*feature.folders, feature.name)).strip(" /")
     return ": ".join(each for each in (place or Path(feature.place.file).name, path[:200]) if each)
-
-
-def in_crs(latitude: float, longitude: float, crs: str) -> tuple[float, float]:
-    """Return a position of WGS84 in another crs."""
-    if crs.casefold() in ("epsg:4326", "wgs84"):
-        return latitude, longitude
-    east, north = _transformer(crs).transform(longitude, latitude)
-    return float(north), float(east)
-
-
-@cache
-def _transformer(crs: str) -> Transformer:
-    from pyproj import Transformer
-
-    return Transformer.from_crs("EPSG:4326", crs, always_xy=True)
 
 
 def _stated(element: Element, given: Mapping[str, object], *, heights: bool = False) -> dict[str, object]:

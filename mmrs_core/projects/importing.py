@@ -18,11 +18,12 @@ from mmrs_core.grounding.frame import frame_of
 from mmrs_core.languages.element import descendants, label_of
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.projects import ALTITUDE
-from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames
+from mmrs_core.projects.building import Builder, Outcome, UniqueNames
 from mmrs_core.projects.choosing import Assignment, Chooser, Decision
 from mmrs_core.projects.heights import Levels, levels_at
 from mmrs_core.projects.kinds import MISSION, ImportKinds
 from mmrs_core.projects.likeness import position_of
+from mmrs_core.projects.placing import Basis
 from mmrs_core.projects.shapes import UnfitError, shape
 from mmrs_core.projects.target import ImportTarget, blank, opened
 from mmrs_core.projects.team import Home, RobotWanted, TypeFile, homes_for, medium_of
@@ -265,7 +266,11 @@ def _built(
         outcome = builder.build(feature, decision)
         if decision.kind.name == "home":
             unfit, (latitude, longitude) = _unfit(feature), map(float, feature.rings[0][0])
-            owners = begin.get(position_of(builder.coordinate(latitude, longitude)), []) if not unfit else []
+            owners = (
+                begin.get(position_of(builder.placing.coordinate(latitude, longitude)), [])
+                if not unfit
+                else []
+            )
             named = [at for at in owners if at >= old] or owners
             called = ", ".join(team.robots[at].name for at in named)  # type: ignore[attr-defined]
             if named and named[0] >= old:
