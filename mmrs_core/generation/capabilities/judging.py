@@ -101,17 +101,19 @@ class Trial:
         """Prepare the target's templates."""
         self._target = target
         self._press = Press(target, environment_of(target))
+        self._without: dict[int, tuple[set[str], tuple[object, ...]]] = {}
 
     def judged(self, probe: Probe) -> TargetCapability:
         """Return what the target does with the element of a probe."""
         refused = self._refusals(probe.given)
-        if reasons := refused - self._refusals(probe.without) or refused:
+        others_refused, others = self._of_others(probe.without)
+        if reasons := refused - others_refused or refused:
             verdict: Verdict = "refused" if self._impossible(probe.given) else "lossy"
             words = "; ".join(sorted({_short(each) for each in reasons}))
             return TargetCapability(probe.group, probe.element, verdict, words)
         how = self._how(probe.element)
-        verdict = "no difference" if self._same(probe) else "expressed"
-        return TargetCapability(probe.group, probe.element, verdict, how)
+        same = all(file == other for file, other in zip_longest(self._rendered(probe.given), others))
+        return TargetCapability(probe.group, probe.element, "no difference" if same else "expressed", how)
 
     def _how(self, element: str) -> str:
         words = self._target.capabilities
@@ -130,10 +132,12 @@ class Trial:
             return True
         return False
 
-    def _same(self, probe: Probe) -> bool:
-        """Return whether the same is rendered with the element and without it."""
-        files, others = self._rendered(probe.given), self._rendered_at_all(probe.without)
-        return all(file == other for file, other in zip_longest(files, others))
+    def _of_others(self, without: TargetInput) -> tuple[set[str], tuple[object, ...]]:
+        """Return the refusals and the files of a behaviour that many probes share."""
+        key = id(without)  # probes keep it
+        if key not in self._without:
+            self._without[key] = self._refusals(without), tuple(self._rendered_at_all(without))
+        return self._without[key]
 
     def _rendered_at_all(self, input: TargetInput) -> Iterator[tuple[str, bytes] | UnsupportedError]:
         """Yield each file, then the reason why a behaviour cannot be rendered, if it cannot."""
