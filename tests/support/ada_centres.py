@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import socket
 import subprocess
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,6 +20,7 @@ from can_hub import RunningHub, running
 from dives import diver
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.targets.ada.target import ADA
+from shared import made_once
 from warm_python import python
 
 from auv_vessel.body.surroundings import Surroundings
@@ -44,13 +44,10 @@ from mmrs_core.testing.programs import installed
 
 Meddle: TypeAlias = "Callable[[World, subprocess.Popen[str]], None]"
 
-SHARED = tempfile.TemporaryDirectory(prefix="ada-")
-"""What was compiled of the sources that decision centres share."""
-
 STILL = Surroundings(noise=False)
 """Water in which instruments do not err."""
 
-FLAGS = ("-gnat2012", "-gnatwa", "-gnatwe")
+FLAGS = ("-gnat2012", "-gnatwa", "-gnatwe", "-gnata")
 
 
 def write(behaviour: Program, folder: Path, type: RobotType | None = None) -> Path:
@@ -67,18 +64,36 @@ def write(behaviour: Program, folder: Path, type: RobotType | None = None) -> Pa
 
 
 def build(robot: Path) -> Path:
-    """Compile a decision centre; return the program. What centres share is compiled once for all of them."""
-    made, common = robot / "obj", "../../common"
-    sources = sorted([*robot.parent.glob("common/*.ad[bs]"), robot / "mission.ads"])
-    shared = Path(SHARED.name) / sha256(b"".join(each.read_bytes() for each in sources)).hexdigest()
-    shutil.copytree(shared, made) if shared.exists() else made.mkdir()
-    words = ["gnatmake", "-q", "-m", *FLAGS, "-I..", f"-I{common}", f"{common}/decision_centre.adb"]
-    done = subprocess.run(words, cwd=made, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    if not shared.exists():
-        own = shutil.ignore_patterns("mission.*", "conditions.*", "decision_centre")
-        shutil.copytree(made, shared, ignore=own)
-    return made / "decision_centre"
+    """Compile a decision centre; return the program."""
+    return compiled(robot, "../../common/decision_centre.adb")
+
+
+def compiled(robot: Path, unit: str) -> Path:
+    """Compile a program; return it. What programs share is compiled once for all of them.
+
+    Args:
+        unit: its file, as seen from a folder inside that of the robot.
+    """
+    common = sorted([*robot.parent.glob("common/*.ad[bs]"), robot / "mission.ads"])
+    name = f"ada-{sha256(b''.join(each.read_bytes() for each in common)).hexdigest()}"
+    made = robot / "obj"
+
+    def make(folder: Path) -> None:
+        _gnatmake(made, "../../common/decision_centre.adb")
+        made.rename(folder)
+        for each in (*folder.glob("mission.*"), *folder.glob("conditions.*")):
+            each.unlink()
+
+    shutil.copytree(made_once(name, make), made)
+    _gnatmake(made, unit)
+    return made / Path(unit).stem
+
+
+def _gnatmake(folder: Path, unit: str) -> None:
+    folder.mkdir(exist_ok=True)
+    words = ["gnatmake", "-q", "-m", *FLAGS, "-I..", "-I../../common", unit]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=300)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def judge(robot: Path, units: Sequence[str] = ("mission.adb", "conditions.adb")) -> str:

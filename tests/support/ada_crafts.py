@@ -12,7 +12,8 @@ from math import inf, nan, nextafter
 from pathlib import Path
 from random import Random
 
-from ada_centres import FLAGS, write
+import ada_centres
+from ada_centres import write
 from dives import dive
 from mmrs_auv.targets.ada import tables
 from mmrs_auv.targets.ada.bus import HEARD, SPOKEN
@@ -51,7 +52,7 @@ GREATEST = struct.unpack(">d", bytes.fromhex("7fefffffffffffff"))[0]
 
 def compiled(folder: Path) -> Path:
     """Return a program that does what scripts say with the modules of a decision centre."""
-    common = write(dive(), folder).parent / "common"
+    robot = write(dive(), folder)
     listed = ",\n      ".join(f"{number} => Catalogue.{each.name}" for number, each in enumerate(MESSAGES))
     figures = ",\n      ".join(
         f"{number} => Long_Float (Tables.LIMIT_{each})" for number, each in enumerate(FIGURES)
@@ -59,12 +60,9 @@ def compiled(folder: Path) -> Path:
     table = f"   Messages : constant array (Natural range <>) of Wire.Message :=\n     ({listed});\n"
     table += f"   Figures : constant array (Natural range <>) of Long_Float :=\n     ({figures});\n"
     text = f"with Catalogue;\nwith Tables;\nwith Wire;\n\npackage Listed is\n{table}end Listed;\n"
-    (common / "listed.ads").write_text(text)
-    shutil.copy(SCRIPT, common)
-    words = ["gnatmake", "-q", *FLAGS, "-gnata", SCRIPT.name]
-    done = subprocess.run(words, cwd=common, capture_output=True, text=True, timeout=300)
-    assert (done.returncode, done.stderr) == (0, "")
-    return common / SCRIPT.stem
+    (robot / "listed.ads").write_text(text)
+    shutil.copy(SCRIPT, robot)
+    return ada_centres.compiled(robot, f"../{SCRIPT.name}")
 
 
 def told(program: Path, lines: Sequence[str]) -> list[str]:
