@@ -13,10 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from _pytest.runner import runtestprotocol
 from xdist.scheduler import LoadScopeScheduling
 
 _MARK = re.compile(r'\bmark\.(real_time|together|long)\b(?:\("([^"]+)"\))?')
 _RANKS = {"real_time": 0, "together": 1, "long": 1}
+_WORTH_A_REPORT = 0.01
+"""Seconds of a test's setup or teardown from which on ``--durations`` lists it."""
 
 
 @cache
@@ -84,11 +87,15 @@ class InWorkers:
             item.add_marker(pytest.mark.timeout(0))
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        if not isinstance(item, WholeFile):
-            return None
-        item.following = nextitem
-        item.runtest()
+    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool:
+        """Run a file, or a test of one; report what counts, since a report costs as much as a short test."""
+        if isinstance(item, WholeFile):
+            item.following = nextitem
+            item.runtest()
+            return True
+        for report in runtestprotocol(item, nextitem=nextitem, log=False):
+            if report.when == "call" or not report.passed or report.duration > _WORTH_A_REPORT:
+                item.ihook.pytest_runtest_logreport(report=report)
         return True
 
 
