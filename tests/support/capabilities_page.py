@@ -9,7 +9,7 @@ from mmrs_core.cli.generate import is_policy, policy_lines
 from mmrs_core.generation.capabilities.judging import VERDICTS, TargetCapability
 
 _PREFACE = """\
-# Capabilities of the targets
+# {title}
 
 What `mmrs-gen` can write of a behaviour, element by element. This page is generated: each line comes
 from a minimal behaviour that was tried, with the element and without. `mmrs-gen --capabilities` prints it for
@@ -20,11 +20,13 @@ the targets that are installed, those of plug-ins included; `mmrs-gen --capabili
 """
 
 
-def page_of(tables: Mapping[str, Sequence[TargetCapability]], descriptions: Mapping[str, str]) -> str:
+def page_of(
+    title: str, tables: Mapping[str, Sequence[TargetCapability]], descriptions: Mapping[str, str]
+) -> str:
     """Return the page in Markdown: a section for each target, in the order of the tables."""
     verdicts = "".join(f"| {verdict} | {meaning} |\n" for verdict, meaning in VERDICTS.items())
     sections = (f"\n## {name}\n\n{descriptions[name]}\n{_section(rows)}" for name, rows in tables.items())
-    return _PREFACE + verdicts + "".join(sections)
+    return _PREFACE.format(title=title) + verdicts + "".join(sections)
 
 
 def _section(rows: Sequence[TargetCapability]) -> str:

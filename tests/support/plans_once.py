@@ -1,4 +1,4 @@
-"""Plans of a test run: a scene that is planned in one process is not planned again in the others."""
+"""Plans and tables of capabilities of a test run: what one process has found is not sought by the others."""
 
 from __future__ import annotations
 
@@ -6,13 +6,18 @@ import os
 import pickle
 from hashlib import sha256
 from io import BytesIO
+from pathlib import Path
 from time import process_time
 from typing import Any
 
 import shared
 
 from mmrs_core import pipeline
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.targets import Target
 from mmrs_core.diagnostics import Place
+from mmrs_core.generation.capabilities import judging
+from mmrs_core.generation.capabilities.judging import TargetCapability, capabilities_of
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Plan, Scene
@@ -26,6 +31,23 @@ def remember_plans() -> None:
     """Have the pipeline, and commands that are imported from now on, find plans of equal scenes."""
     _FOLDER.mkdir(exist_ok=True)
     pipeline.plan = _remembered
+
+
+def remember_capabilities() -> None:
+    """Have modules that are imported from now on find what installed targets do with each element."""
+    judging.capabilities_of = _remembered_table
+
+
+def _remembered_table(target: Target, contributions: Contributions) -> tuple[TargetCapability, ...]:
+    if contributions.targets.get(target.name) != target:
+        return capabilities_of(target, contributions)
+
+    def make(file: Path) -> None:
+        file.write_bytes(pickle.dumps(capabilities_of(target, contributions)))
+
+    kinds = sha256(repr(sorted(contributions.robot_kinds)).encode()).hexdigest()
+    made = shared.made_once(f"capabilities-{target.name}-{kinds}", make)
+    return pickle.loads(made.read_bytes())  # type: ignore[no-any-return]
 
 
 def _remembered(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from functools import cache
 
 import pytest
 from mmrs_multicopter.names import MULTICOPTER
@@ -54,39 +53,8 @@ TOLD_WITH = {
 NOT_OF_BEHAVIOURS = {"Drone", "DroneSize"}
 """Classes of the multicopters' language that are about types of robots."""
 
-MAKE_NO_DIFFERENCE = {
-    "mavlink-python": {
-        "Behaviour.altitudeReference MSL",
-        "Behaviour.altitudeReference ELLIPSOID",
-        "Behaviour.altitudeReference ORIGIN",
-        "Behaviour.geoidSeparation",
-        "Behaviour.minimumSeparation",
-        "Behaviour.acceptedUnknowns",
-        "Behaviour.idleRobots",
-        "Context.obstacles: with a height",
-        "Target.name",
-    },
-    "qgc-plan": {
-        "Behaviour.name",
-        "Behaviour.minimumSeparation",
-        "Behaviour.reserve",
-        "Behaviour.acceptedUnknowns",
-        "Behaviour.idleRobots",
-        "Robot.slots",
-        "Context.obstacles: with a height",
-        "Target.name",
-        "Recharge",
-        "Move.name",
-        "Move.task",
-        "Move.rule",
-    },
-}
-MAKE_NO_DIFFERENCE["wpl"] = MAKE_NO_DIFFERENCE["qgc-plan"] | {"Robot.typeName"}
 
-
-@cache
 def table_of(name):
-    """Return the table of a target, which takes seconds to make."""
     return capabilities_of(BY_NAME[name], installed())
 
 
@@ -108,14 +76,6 @@ def test_every_feature_of_the_languages_of_behaviours_has_a_row(features):
     told = {name: TOLD_WITH.get(name, name) for name in features}
     assert len(features) > 60
     assert [n for n, begin in told.items() if not any(each.startswith(begin) for each in elements)] == []
-
-
-@pytest.mark.parametrize("name", sorted(BY_NAME))
-def test_nothing_but_what_is_known_to_be_for_others_makes_no_difference(name):
-    """What a target neither writes nor refuses has been dropped silently."""
-    assert {row.element for row in table_of(name) if row.verdict == "no difference"} == MAKE_NO_DIFFERENCE[
-        name
-    ]
 
 
 @pytest.mark.parametrize("name", sorted(BY_NAME))
