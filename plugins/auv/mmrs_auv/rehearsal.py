@@ -20,7 +20,7 @@ from mmrs_core.cli.typed import obeyed
 from mmrs_core.errors import LinkLostError
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
-HUB_SECONDS, END_SECONDS = 30.0, 10.0
+END_SECONDS = 10.0
 """Real seconds that a hub has to begin, and that processes have to end."""
 BUS_FAULTS = "cut, loss SHARE, delay SECONDS, corruption SHARE, and clear bus"
 

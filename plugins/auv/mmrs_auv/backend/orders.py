@@ -34,9 +34,7 @@ from mmrs_runtime.faults import DEVICE_SILENT
 from mmrs_runtime.policies import AFTER, Policy, patience
 from mmrs_runtime.vehicle import Fault
 
-START, STOP, HEAD_TO, GO_TO, RECHARGE = (
-    (BEHAVIOUR, name) for name in ("Start", "Stop", "HeadTo", "GoTo", "Recharge")
-)
+START, STOP, GO_TO, RECHARGE = ((BEHAVIOUR, name) for name in ("Start", "Stop", "GoTo", "Recharge"))
 
 
 class BehaviourOrders:
