@@ -62,7 +62,7 @@ def main() -> None:
     print(f"allocation, {date.today().isoformat()}, seed {given.seed}, {machine}")
     mmrs({**places(3, 150, 0), "seconds": 0.1})  # what numba compiles is compiled now
     print("longest tour in metres, and by how much it is shorter than the better peer's; inf: none found;")
-    print("bound: of `planning.forests`, or there and back to the stop most distant from all homes\n")
+    print("bound: of `planning.forests` or `planning.few_places`\n")
     heads = (*(f"{each:>10}" for each in ("bound", "mmrs", *PEERS)), "   shorter by")
     print(f"{'robots':>6}{'stops':>7}{'seed':>5}{'CPU s':>7}", *heads, sep="")
     for m, n, seconds, seeds in (SIZES[k] for k in given.sizes):
@@ -88,11 +88,12 @@ def places(m: int, n: int, seed: int) -> dict:
 
 
 def bound(case: dict) -> float:
+    from mmrs_core.planning.few_places import longest_to_few
     from mmrs_core.planning.forests import least_longest
 
     homes, stops = np.array(case["homes"]), np.array(case["stops"])
     go, out = (np.linalg.norm(each[:, None] - stops, axis=2) for each in (stops, homes))
-    return max(2.0 * out.min(axis=0).max(), least_longest(go, out, True, 0.0))
+    return max(least_longest(go, out, True, 0.0), longest_to_few(go, out, True))
 
 
 def longest(case: dict, tours: list[list[int]]) -> float:

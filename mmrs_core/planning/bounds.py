@@ -1,7 +1,8 @@
 """A makespan that no plan falls below, whatever it decides.
 
 It is the larger of two. One task after the other: a robot has to get there, do it, perhaps after those that
-it waits for, and come back. All tasks together: tours that come to all places, and all work, see `forests`.
+it waits for, and come back. All tasks together: tours that come to all places, and all work, see `forests`
+and `few_places`.
 
 Legs count as straight and level, from a stop to a stop, at the highest speed that a robot is ever commanded:
 no detour, corner or stop between is quicker. Strokes count as the hulls of their points, within which a robot
@@ -19,6 +20,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mmrs_core.planning.few_places import longest_to_few
 from mmrs_core.planning.forests import least_longest, shared, spanning_tree
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.sorties import Pilot
@@ -80,7 +82,8 @@ def _together(
     boxes = shapely.bounds(places)
     (west, south, east, north), points = boxes.T.copy(), bool((boxes[:, :2] == boxes[:, 2:]).all())
     if points and len(places) <= _MOST:
-        return least_longest(seconds(_distances(places, places)), seconds(away), back, work)
+        between, there = seconds(_distances(places, places)), seconds(away)
+        return max(least_longest(between, there, back, work), longest_to_few(between, there, back))
 
     def lengths_from(i: int) -> Array:
         if not points and len(places) <= _MOST:
