@@ -21,7 +21,7 @@ from mmrs_core.errors import LinkLostError
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
 END_SECONDS = 10.0
-"""Real seconds that a hub has to begin, and that processes have to end."""
+"""Real seconds that processes have to end."""
 BUS_FAULTS = "cut, loss SHARE, delay SECONDS, corruption SHARE, and clear bus"
 
 
