@@ -127,10 +127,11 @@ def test_each_element_has_one_row():
     assert len(rows) == len(set(rows))
 
 
-@pytest.fixture
-def cards(tmp_path):
+@pytest.fixture(scope="module")
+def cards(tmp_path_factory):
     """Return a plug-in's target that writes the moves of robots and refuses devices."""
-    (tmp_path / "card.jinja").write_text("{% for m in robot.moves %}{{ m.kind | comment }}\n{% endfor %}")
+    templates = tmp_path_factory.mktemp("cards")
+    (templates / "card.jinja").write_text("{% for m in robot.moves %}{{ m.kind | comment }}\n{% endfor %}")
 
     def files(given):
         for number, robot in enumerate(given.program.robots):
@@ -142,18 +143,22 @@ def cards(tmp_path):
                 if move.after:
                     yield f"robot '{robot.id}', move '{move.id}': has actions"
 
-    return Target("cards", "cards", tmp_path, files, refusals, capabilities={"Land": "a line"})
+    return Target("cards", "cards", templates, files, refusals, capabilities={"Land": "a line"})
 
 
-def test_the_target_of_a_plugin_is_tried_in_the_same_way(cards):
-    table = {row.element: row for row in capabilities_of(cards, installed())}
+@pytest.fixture(scope="module")
+def rows(cards):
+    return capabilities_of(cards, installed())
+
+
+def test_the_target_of_a_plugin_is_tried_in_the_same_way(rows):
+    table = {row.element: row for row in rows}
     assert (table["Land"].verdict, table["Land"].how) == ("expressed", "a line")
     assert (table["Feedback"].verdict, table["Feedback"].how) == ("lossy", "has actions")
     assert table["GoTo.speed"].verdict == "no difference"
 
 
-def test_what_neither_changes_the_files_nor_is_refused_nor_explained_is_lost(cards):
-    rows = capabilities_of(cards, installed())
+def test_what_neither_changes_the_files_nor_is_refused_nor_explained_is_lost(cards, rows):
     found = {row.element for row in lost(cards, rows)}
     assert {"GoTo.speed", "MoveTransition.waitFor", "GoTo.heading (plain robot)", "LINK_LOST: HOLD"} <= found
     assert not {"GoTo", "Feedback", "Move.task", "Behaviour.reserve", "Target.name"} & found
@@ -169,8 +174,7 @@ def test_what_neither_changes_the_files_nor_is_refused_nor_explained_is_lost(car
         ("GoTo", set()),
     ],
 )
-def test_words_about_an_element_say_that_nothing_is_lost(cards, words, excused):
-    rows = capabilities_of(cards, installed())
+def test_words_about_an_element_say_that_nothing_is_lost(cards, rows, words, excused):
     told = replace(cards, capabilities={words: "no robot needs it"})
     names = {row.element for row in lost(told, rows)}
     assert not excused & names
@@ -185,7 +189,8 @@ def test_what_a_move_does_on_its_way_to_another_height_is_tried(cards, tmp_path)
             paths = [each.path for each in planned_moves(robot, given)]
             yield FileSpec(f"card_{number}.txt", "card.jinja", {"paths": paths})
 
-    rows = {row.element: row for row in capabilities_of(replace(cards, files=files), installed())}
+    made = replace(cards, templates=tmp_path, files=files)
+    rows = {row.element: row for row in capabilities_of(made, installed())}
     assert rows["GoTo.trajectory HORIZONTAL_FIRST"].verdict == "expressed"
     assert rows["GoTo.trajectory VERTICAL_FIRST"].verdict == "expressed"
 
@@ -196,8 +201,8 @@ def test_a_heading_that_is_written_is_expressed_of_devices_on_gimbals_too():
     assert any("gimbal" in row.element for row in of_gimbals)
 
 
-def test_moves_that_plugins_have_added_get_a_row_for_themselves_and_for_each_attribute(cards):
-    added = [row for row in capabilities_of(cards, installed()) if row.group == f"move of {MULTICOPTER}"]
+def test_moves_that_plugins_have_added_get_a_row_for_themselves_and_for_each_attribute(rows):
+    added = [row for row in rows if row.group == f"move of {MULTICOPTER}"]
     assert [(row.element, row.verdict) for row in added] == [
         ("GoTo", "expressed"),
         ("GoTo.trajectory HORIZONTAL_FIRST", "no difference"),
