@@ -272,6 +272,11 @@ class Observer:
 
     def _keep(self, message: mavlink.MAVLink_message) -> None:
         kind = message.get_type()
+        if kind in (
+            "GLOBAL_POSITION_INT",
+            "ATTITUDE",
+        ):  # some vehicles that lose their position tell no more of it
+            self._keep_time(message.time_boot_ms * 1e-3)
         if kind == "HEARTBEAT" and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
             self.system = message.get_srcSystem()
             self._is_px4 = message.autopilot == mavlink.MAV_AUTOPILOT_PX4
@@ -301,10 +306,12 @@ class Observer:
         elif kind == "COMMAND_ACK":
             self.acks.append((message.command, message.result))
 
+    def _keep_time(self, now: float) -> None:
+        self._now = now
+        if self._began is None or now < self._began[1]:
+            self._began = (time.monotonic(), now)
+
     def _keep_fix(self, message: mavlink.MAVLink_message) -> None:
-        self._now = message.time_boot_ms * 1e-3
-        if self._began is None or self._now < self._began[1]:
-            self._began = (time.monotonic(), self._now)
         degrees = (message.lat * 1e-7, message.lon * 1e-7)
         heights = (message.alt * 1e-3, message.relative_alt * 1e-3)
         speeds = (message.vx * 0.01, message.vy * 0.01, message.vz * 0.01)

@@ -363,9 +363,9 @@ class Flying:
         return self._still(robot) and (not observer.armed or kind != "copter" or self.flight.ends == HOLDS)
 
     def _still(self, robot: str) -> bool:
-        track = self.vehicles[robot].observer.track
-        latest = [fix for fix in track[-400:] if fix.t > track[-1].t - STILL_SECONDS]
-        flew = self.vehicles[robot].observer.has_been_armed
+        observer = self.vehicles[robot].observer
+        latest = [fix for fix in observer.track[-400:] if fix.t > observer.now - STILL_SECONDS]
+        flew = observer.has_been_armed
         return flew and all(
             hypot(fix.vx, fix.vy, fix.vz) < (STILL if fix.armed else DISARMED_STILL) for fix in latest
         )
@@ -430,7 +430,7 @@ class Flying:
             return SURFACE
         if away < self.flight.landing:
             return HOME
-        return HOLDS if last.armed or kind == "rover" else AWAY
+        return HOLDS if self.vehicles[robot].observer.armed or kind == "rover" else AWAY
 
     def _judge_logs(self) -> None:
         result = self.result
