@@ -56,8 +56,8 @@ def _short(craft: Craft, *policies: tuple[str, str, float], stays: float = 0.0, 
 
 
 PASSING = Route("Kestrel", PHOTOGRAPHER, SQUARE, 3.0, photos=8.0)
-"""On each leg, one at once, three at 8 m each, and a last one; an ArduPilot whose shutter has not closed yet
-leaves out the first of the next leg, at the same place."""
+"""On each leg, one at once, three at 8 m each, and a last one; an ArduPilot may leave out the first of the
+next leg, which is at the same place."""
 
 NAMES: Mapping[Craft, str] = {COPTER: "copter", ROVER: "rover", SUB: "sub"}
 AT_LEG = Begun("p1", 3.0)
