@@ -363,6 +363,17 @@ class ModeControl:
         self._arming = False
         return True
 
+    def pace_next(self, speed: float | None) -> None:
+        """Set another speed than that of the last target before the next one is sent.
+
+        A vehicle plans the whole leg with the speed that holds as it receives its target.
+
+        Raises:
+            RefusedError: the vehicle takes no such speed.
+        """
+        if self._speed not in (None, speed):
+            self.pace(speed)
+
     def pace(self, speed: float | None, *, again: bool = False) -> None:
         """Set the speed, metres per second, towards the target just sent and later ones; None: unchanged.
 

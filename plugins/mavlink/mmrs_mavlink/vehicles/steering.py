@@ -113,6 +113,7 @@ class Steering:
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
         resend = self._link.profile.timing.resend
         advance, lost = Advance(self._telemetry, place), False
+        self._mode_control.pace_next(speed)
         self._steer(place, look)
         while True:
             self._mode_control.pace(speed, again=lost)

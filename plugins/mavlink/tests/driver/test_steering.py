@@ -100,6 +100,16 @@ def test_a_speed_is_commanded_behind_three_targets_and_then_no_more(driven):
     assert names[0] in TARGETS
 
 
+def test_another_speed_is_set_before_the_target_that_it_is_for(driven):
+    vehicle, wire = driven(HOME, on_the_earth())
+    for latitude, speed in ((42.3705, 5.0), (42.371, 2.0)):
+        vehicle.go_to(Geographic(latitude, 13.35, 20.0), speed, None, False)
+    slower = next(each for each in commands(wire, SPEED) if each.param2 == 2.0)
+    sent = [message for message, _ in wire.sent]
+    second = next(each for each in sent if each.get_type() in TARGETS and each.lat_int == round(42.371 * 1e7))
+    assert sent.index(slower) < sent.index(second)
+
+
 def test_targets_are_heights_above_home_and_the_vehicle_looks_where_it_goes(driven):
     vehicle, wire = driven(HOME, on_the_earth())
     vehicle.go_to(Geographic(42.37, 13.351, 30.0), None, None, False)
