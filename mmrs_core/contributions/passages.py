@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
+from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.behaviour.walk import successors
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.runs import STRAIGHT_DEGREES, runs_of, turn_degrees
 from mmrs_core.scene.headings import bearing
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram
     from mmrs_core.scene import Kinematics, Name, Position
     from mmrs_core.scene.timing import Push
+
+RECHARGE = (BEHAVIOUR, "Recharge")
 
 
 class Passage(NamedTuple):
@@ -63,13 +67,27 @@ class Passages:
         self._lasts = frozenset(run[-1] for run in runs)
         self._stops = kinematics.turning_radius <= 0.0
         self._held = frozenset(run[0] for run in runs if self._stops)
+        self._first = frozenset(self._setting_out()) if kinematics.setting_out().expected else frozenset()
 
     def kinematics(self, move: Move) -> Kinematics:
         """Return what the robot can do in a move."""
         index = self._index[move.id]
-        if index in self._lasts:
-            return self._ending
-        return self._mission if index in self._uploaded else self._kinematics
+        known = self._mission if index in self._uploaded else self._kinematics
+        known = self._ending if index in self._lasts else known
+        return replace(known, sets_out=True) if index in self._first else known
+
+    def _setting_out(self) -> Iterator[int]:
+        """Yield the moves before which motors may be off: the first ones, and those after charging."""
+        after, seen = successors(self._robot), set[int]()
+        off = [self._robot.start, *(i for i, move in enumerate(self._robot.moves) if move.is_a(RECHARGE))]
+        while off:
+            for index in set(after[off.pop()]) - seen:
+                seen.add(index)
+                name = most_specific(self._robot.moves[index].metaclasses, self._move_kinds)
+                if name is not None and "grounded" in self._move_kinds[name].needs:
+                    off.append(index)
+                else:
+                    yield index
 
     def facing(self, move: Move, path: tuple[Position, ...], before: float | None) -> float | None:
         """Return where the robot looks after a move that it ends with a stop, degrees clockwise from north.

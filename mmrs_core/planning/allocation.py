@@ -291,7 +291,8 @@ class _Legs:
         """Return (bounds, robots, stops) the seconds from homes to stops, and from there back."""
         kinematics = self._pilots[0].kinematics
         homes, begins, ends = (_places(each) for each in (self._homes(), self._begins, self._ends))
-        up, down = np.zeros((len(self._bounds), len(begins))), np.zeros((len(self._bounds), len(ends)))
+        out = self._of(kinematics.setting_out())
+        up, down = np.repeat(out, len(begins)).reshape(-1, len(begins)), np.zeros((len(out), len(ends)))
         if kinematics.launches:
             ground = float(homes[:, 2].mean())
             longer = np.array([[1.0 + bound * kinematics.timing.spread] for bound in self._bounds])

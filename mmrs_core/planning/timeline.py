@@ -124,7 +124,7 @@ class _Walk:
         hasty: see `timelines_of`.
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
-        gone: whether it has gone anywhere yet.
+        gone: whether it has gone anywhere yet. off: whether its motors are, as at home.
         stops, known, moments: see `Timeline`.
         merges: whether it comes from the arms of a choice, and must stop before it gives a signal.
     """
@@ -138,6 +138,7 @@ class _Walk:
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
     gone: bool = False
+    off: bool = True
     stops: list[Ride] = field(default_factory=list)
     moments: list[tuple[float, float]] = field(default_factory=list)
     merges: bool = False
@@ -181,6 +182,7 @@ class _Walk:
         else:
             charging = self.kinematics.charging_time(step.end - step.begin)
             self._stay(charging.shortest if self.hasty else charging.expected, charging.longest)
+            self.off = True
 
     def _upright(self, step: Launch | Recover) -> None:
         column = self.here, (step.at[0], step.at[1], step.up)
@@ -253,8 +255,10 @@ class _Walk:
         most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
         slowest = min(rates.cruise, rates.climb, rates.descent)
         search = (self.radius / slowest if slowest > 0.0 else inf) if self.radius else 0.0
+        out = self.kinematics.setting_out().longest if self.off else 0.0
+        self.off = False
         early = self.now
-        self._ride(points, max(0.0, least - search), most + search, rates)
+        self._ride(points, max(0.0, least - search), most + search + out, rates)
         if self.kinematics.timing.overshoot > 0.0:
             self._overshoot(legs, early, speed or self.kinematics.cruise)
 

@@ -267,7 +267,12 @@ class Travel:
 
     def _outward(self, goal: Position) -> Route | str:
         if not self.kinematics.launches:
-            return self._routed(self.robot.home, goal)
+            route = self._routed(self.robot.home, goal)
+            if isinstance(route, str):
+                return route
+            out = self.kinematics.setting_out()
+            whole = MoveSeconds(*(a + b for a, b in zip(route.bounds, out, strict=True)))
+            return self._route(route.points, whole, route.length)
         best: Route | str = ""
         for height in self._launch_heights(goal):
             above, reason = self._above_home(height)

@@ -148,7 +148,8 @@ class Kinematics:
         timing: of legs that are commanded one by one.
         turn_rate: degrees per second.
         floor, ceiling: heights above the origin between which the robot may move, metres.
-        launch: seconds that launching takes beside the climb; recovery: likewise for landing.
+        launch: seconds that launching takes beside the climb, and setting out where the robot does not
+            launch; recovery: likewise for landing.
         noticing: seconds of each of these, and of a run's last leg, until a program notices its end.
         landing_rate: metres per second of the descent below `landing_height`, metres above the ground.
         endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
@@ -172,6 +173,7 @@ class Kinematics:
         facing: degrees clockwise from north in which it looks before a move; None: not known.
         push: with which it begins a move; None: not known.
         entering: metres per second of the move before, at most, where it passes the end of that.
+        sets_out: whether its motors may be off before a move.
     """
 
     cruise: float
@@ -205,6 +207,7 @@ class Kinematics:
     facing: float | None = None
     push: Push | None = None
     entering: float = 0.0
+    sets_out: bool = False
 
     def fits_curve(self, turn: float, leg: float) -> bool:
         """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.
@@ -255,6 +258,14 @@ class Kinematics:
         half = bounded(180.0 / self.turn_rate, self.timing)
         angle = 90.0 if goal is None or self.facing is None else abs(turn(self.facing, goal))
         return MoveSeconds(0.0, angle / self.turn_rate, half.longest + noticing(self.timing))
+
+    def setting_out(self) -> MoveSeconds:
+        """Return how long it takes until the motors of a robot run that does not launch.
+
+        Vehicles tell that from time to time, and two messages may be lost.
+        """
+        expected = 0.0 if self.launches else self.launch
+        return MoveSeconds(0.0, expected, 3.0 * expected)
 
     def charging_time(self, seconds: float) -> MoveSeconds:
         """Return how long charging takes that is to take so long: until the batteries are full.

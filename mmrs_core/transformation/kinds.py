@@ -168,13 +168,14 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
 
     The robot stops after every leg; where the move flows into the next or out of the one before, it may
     be quicker. One that cannot turn on the spot may have to turn right round first, or go the right way
-    already.
+    already. Where its motors may be off before, it sets out.
     """
     rates, legs = kinematics.rates(move.speed), list(pairwise(path))
     soonest = rates.soonest()
     latest, facing, push = rates.latest(), kinematics.facing, kinematics.push
     entering = kinematics.entering
-    least = expected = most = 0.0
+    out = kinematics.setting_out() if kinematics.sets_out and legs else MoveSeconds.exactly(0.0)
+    least, expected, most = out
     for leg in legs:
         least += soonest.eased(*leg, entering) if move.flows else soonest.from_stop_to_stop(*leg, push=push)
         expected += rates.from_stop_to_stop(*leg, facing, push)

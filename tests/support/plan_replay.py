@@ -44,7 +44,7 @@ class _Walk:
     def __init__(self, scene, robot):
         self.scene, self.robot, self.kinematics = scene, robot, robot.kinematics
         self.here, self.time, self.faults = robot.home, 0.0, []
-        self.away = not robot.kinematics.launches
+        self.away = self.off = not robot.kinematics.launches
         self.used, self.length = 0.0, 0.0
         power = self.kinematics.power
         self.limit = min(self.kinematics.endurance, self.kinematics.energy / power if power else inf)
@@ -97,7 +97,9 @@ class _Walk:
     def _Transit(self, step):  # noqa: N802
         if not self.away or len(step.route) < 2:
             self.faults.append(f"cannot travel {step}")
-        self.lasts(step, self.move(step.route, step.speed))
+        out = self.kinematics.launch if self.off else 0.0
+        self.off = False
+        self.lasts(step, out + self.move(step.route, step.speed))
         if max(self.route_heights(step.route)) > self.kinematics.ceiling + NEAR:
             self.faults.append(f"{step} is above the ceiling")
 
@@ -133,7 +135,7 @@ class _Walk:
             self.faults.append(f"recharges at {self.here}")
         if step.end - step.begin < self.kinematics.recharge - NEAR:
             self.faults.append("recharges too briefly")
-        self.used = 0.0
+        self.used, self.off = 0.0, not self.kinematics.launches
 
     def _Branch(self, step):  # noqa: N802
         if [condition for condition, _ in step.arms].count(None) != 1 or step.arms[-1][0] is not None:

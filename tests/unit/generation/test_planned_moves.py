@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import MoveTarget, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, MoveTarget, Transition
 from mmrs_core.generation.capabilities.probes import changed
 from mmrs_core.generation.planned_moves import kinematics_of, planned_moves
 from mmrs_core.scene.timing import MoveSeconds
@@ -52,6 +52,23 @@ def test_the_moves_of_a_vehicle_are_its_manoeuvres():
     assert [each.manoeuvre for each in found] == ["", "take_off", "go_to", "land", ""]
     assert all(each.seconds is not None for each in found)
     assert kinematics_of(given.program.robots[0], given).ceiling == 120.0
+
+
+def test_the_first_leg_on_each_charge_counts_that_motors_start():
+    charge = Move("charge", ((BEHAVIOUR, "Recharge"),), {"duration": 60.0})
+    moves = hold("stay", 4.0), go("out", (30.0, 0.0, 0.0)), go("back", (0.0, 0.0, 0.0)), charge
+    one = robot("r", (*moves, go("again", (30.0, 0.0, 0.0))))
+    given = target_input(program(one), [robot_type()])
+    (kind,) = (each for each in given.robot_kinds.values() if each.name == "plain_robot")
+
+    def seconds(launch):
+        known = replace(kind, kinematics=lambda *each: replace(kind.kinematics(*each), launch=launch))
+        found = planned_moves(one, replace(given, robot_kinds={kind.metaclass: known}))
+        return [each.seconds for each in found]
+
+    plain, slow = seconds(0.0), seconds(2.0)
+    later = [tuple(b - a for a, b in zip(*each, strict=True)) for each in zip(plain, slow, strict=True)]
+    assert later == [pytest.approx((0.0, each, 3.0 * each)) for each in (0, 0, 2.0, 0, 0, 2.0, 0)]
 
 
 def test_what_is_not_known_is_none():

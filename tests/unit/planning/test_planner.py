@@ -39,6 +39,13 @@ def test_one_robot_goes_does_it_and_comes_back():
     assert found.robots[0].sorties == 1
 
 
+def test_a_robot_that_does_not_launch_sets_out_once_its_motors_run():
+    place = {"a": visit((60.0, 0.0, 0.0))}
+    plain, slow = (scene([with_kinematics(robot(kinematics=CRAWLER), launch=each)], place) for each in (0, 2))
+    assert sound(slow).makespan == pytest.approx(sound(plain).makespan + 2.0)
+    assert sound(slow).lower_bound <= sound(slow).makespan
+
+
 def test_the_energy_of_a_robot_whose_power_nobody_knows_is_not_known():
     found = sound(scene([with_kinematics(robot(), power=0.0)], {"a": visit((100.0, 0.0, 20.0))}))
     assert found.robots[0].energy is None

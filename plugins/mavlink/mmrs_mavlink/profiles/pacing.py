@@ -100,6 +100,7 @@ ROVER = AutopilotTiming(
         shunts_within=0.0,
         aside=ASIDE_DEGREES,
     ),
+    launch=1.0,
     rounds=True,
 )
 """ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default; neither is commanded, so that of its type
