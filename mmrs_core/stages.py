@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
+from mmrs_core.errors import UnsupportedError
 from mmrs_core.pipeline import (
     BehaviourContext,
     expand,
@@ -13,6 +14,7 @@ from mmrs_core.pipeline import (
     place_of_scene,
     plan,
     program_of,
+    simulate,
     transform,
     verify,
 )
@@ -85,6 +87,23 @@ class Stages:
     def program(self) -> Program:
         """Return the behaviour as engines use it."""
         return program_of(self.transformed[0], self._contributions)
+
+    @cached_property
+    def timed(self) -> Plan:
+        """Return the plan with the times that its behaviour is simulated to take.
+
+        Where choices depend on what is not known yet, or the simulation fails, the planner's times remain.
+        """
+        from mmrs_core.simulation.plan_times import as_simulated
+        from mmrs_runtime.semantics import Outcome
+
+        try:
+            run = simulate(self.program, self.place, self._contributions)
+        except UnsupportedError:
+            return self.plan
+        if run.ending.outcome is not Outcome.SUCCESS:
+            return self.plan
+        return as_simulated(self.plan, run, self.transformed[1], self.program.robots)
 
     @property
     def place(self) -> BehaviourContext:

@@ -57,7 +57,7 @@ class Demonstration:
 
     def lines(self) -> Iterator[str]:
         """Yield about a screenful: plan, safety, run and files."""
-        yield from plan_lines(self.stages.scene, self.stages.plan)
+        yield from plan_lines(self.stages.scene, self.stages.timed)
         yield "Safety checks:"
         yield from verdict_table(self.stages.verdicts)
         outcome, *details = run_lines(self.run)
@@ -78,7 +78,7 @@ class Demonstration:
     def summary(self) -> Mapping[str, object]:
         """Return the demonstration as JSON has it."""
         return {
-            **plan_summary(self.stages.scene, self.stages.plan),
+            **plan_summary(self.stages.scene, self.stages.timed),
             "verdicts": self.stages.verdicts,
             "ending": self.run.ending,
             "replay": self.replayed,

@@ -103,12 +103,12 @@ def plan(
         raise
     save(stages.transformed[0], file, session.contributions, places)
     if json:
-        summary = plan_summary(stages.scene, stages.plan)
+        summary = plan_summary(stages.scene, stages.timed)
         if explain:
             summary = {**summary, "explanation": explanation_summary(stages.explanation)}
         say_json({"behaviour": file, **summary, "verdicts": stages.verdicts})
     else:
-        for line in plan_lines(stages.scene, stages.plan):
+        for line in plan_lines(stages.scene, stages.timed):
             say(line)
         for line in explanation_lines(stages.explanation) if explain else ():
             say(line)

@@ -14,7 +14,6 @@ from mmrs_core.scene.attributes import number
 
 _NOTES = (
     "the terrain is flat at the origin's height",
-    "times include a stop after every leg, but not turning on the spot towards the next",
     "energy is the power against the wind or current times the time on one charge",
 )
 
