@@ -47,8 +47,9 @@ def as_uploaded(kinds: Mapping[Name, RobotKind]) -> dict[Name, RobotKind]:
 
 def _uploaded(of: Callable[[Robot, Scene], Kinematics], robot: Robot, scene: Scene) -> Kinematics:
     whole = of(robot, scene).in_mission()
-    launch, recovery = (max(0.0, each - whole.noticing) for each in (whole.launch, whole.recovery))
-    return replace(whole, mission=None, launch=launch if whole.launches else 0.0, recovery=recovery)
+    ends = (whole.launch, whole.recovery) if whole.launches else (0.0, 0.0)
+    launch, recovery = (max(0.0, each - whole.noticing) for each in ends)
+    return replace(whole, mission=None, launch=launch, recovery=recovery)
 
 
 def _kinematics(

@@ -349,7 +349,10 @@ class Rates:
         return (_speeding(fastest, up, jerk), _speeding(fastest, down, jerk))
 
     def _turning(self, before: Leg, after: Leg) -> float:
-        """Return the seconds of a turn that comes as far from its corner as the radius at most."""
+        """Return the seconds of a turn that comes as far from its corner as the radius at most.
+
+        Half of it takes as long as the robot needs for its distance from the corner then, from a stop.
+        """
         one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
         lengths = hypot(*one) * hypot(*two)
         if lengths <= 0.0:
@@ -359,8 +362,7 @@ class Rates:
         if half <= STRAIGHT or self.timing.corner_radius == inf:
             return inf
         apart = self.timing.corner_radius / (2.0 * half)
-        up, jerk = self.timing.acceleration, self.timing.jerk
-        return _stop_to_stop(2.0 * apart, inf, up, up, jerk)[0]
+        return 2.0 * _covering(apart, self.timing.acceleration, self.timing.jerk)
 
     def _limits(self, start: Position, end: Position) -> tuple[float, float, float, float]:
         """Return the length of a leg, and its largest speed, acceleration and deceleration along it."""
@@ -406,6 +408,15 @@ def _reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, fl
         return seconds, speed * seconds / 3.0
     seconds = speed / acceleration + bend / 2.0
     return seconds, speed * speed / (2.0 * acceleration) + acceleration * bend * bend / 24.0
+
+
+def _covering(metres: float, acceleration: float, jerk: float) -> float:
+    """Return the seconds in which a robot that speeds up from a stop without end has gone so far."""
+    bend = acceleration / jerk if jerk < inf else 0.0
+    if metres <= jerk * bend**3 / 6.0 if bend else acceleration == inf:
+        return float((6.0 * metres / jerk) ** (1.0 / 3.0)) if jerk < inf else 0.0
+    speed, left = acceleration * bend / 2.0, metres - acceleration * bend * bend / 6.0
+    return bend + (sqrt(speed * speed + 2.0 * acceleration * left) - speed) / acceleration
 
 
 def _stop_to_stop(

@@ -195,8 +195,9 @@ def starting_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics
 
 
 def stopping_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
-    """Return the duration of a stop, which takes none, but must be confirmed."""
-    return MoveSeconds(0.0, 0.0, kinematics.timing.reporting)
+    """Return the duration of a stop: until it is confirmed that motors do, which landing includes."""
+    expected = 0.0 if kinematics.launches else kinematics.recovery
+    return MoveSeconds(0.0, expected, max(expected, kinematics.timing.reporting))
 
 
 def declared_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:

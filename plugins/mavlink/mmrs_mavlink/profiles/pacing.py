@@ -37,11 +37,11 @@ COPTER = AutopilotTiming(
     mission=LegTiming(
         acceleration=2.5,
         vertical_acceleration=1.0,
-        jerk=1.0,
+        jerk=0.9,
         climb=2.5,
         descent=1.5,
         corner_radius=2.0,
-        settling=1.75,
+        settling=1.55,
         spread=0.18,
         reporting=5.0,
     ),
@@ -53,8 +53,10 @@ COPTER = AutopilotTiming(
 )
 """WPNAV_ACCEL, WPNAV_ACCEL_Z, WPNAV_SPEED_UP and WPNAV_SPEED_DN, LAND_SPEED and LAND_ALT_LOW; ATC_SLEW_YAW,
 of which 52 degrees per second were measured; PSC_JERK_NE where it is commanded leg by leg, WPNAV_JERK and
-WPNAV_RADIUS on missions, whose legs hold for a second. A mission begins with coming to a stop: one whose
-first leg has no length took 4.4 to 4.6 s for it.
+WPNAV_RADIUS on missions, whose legs hold for a second. WPNAV_JERK is 1 m/s³ and comes and goes within twice
+ATC_INPUT_TC, 0.3 s (``AC_WPNav::calc_scurve_jerk_and_snap``), which makes each phase longer by as much, as
+0.9 m/s³ do at WPNAV_ACCEL. A mission begins with coming to a stop: one whose first leg has no length took
+4.4 to 4.6 s for it.
 
 Leg by leg it slows down by half of its acceleration, which its square-root controller corrects
 (``shape_pos_vel_accel_xy``, ``control.cpp``); it goes beyond places by what its velocity controller lags.
@@ -101,11 +103,14 @@ ROVER = AutopilotTiming(
         aside=ASIDE_DEGREES,
     ),
     launch=1.0,
+    recovery=0.5,
     rounds=True,
 )
 """ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default; neither is commanded, so that of its type
 need not hold. On missions it never reverses to turn, and corners count as passed within WP_RADIUS, which is
-set. Half of the settling is before it sets out, as the first and last legs of runs show."""
+set. Half of the settling is before it sets out, as the first and last legs of runs show.
+
+That its motors run, or have stopped, is known by the next heartbeat: after 0.9 s, and 0.2 to 0.9 s."""
 
 SUB = AutopilotTiming(
     step=LegTiming(
@@ -139,6 +144,8 @@ SUB = AutopilotTiming(
         spread=0.2,
         reporting=5.0,
     ),
+    launch=1.0,
+    recovery=0.5,
     turn_rate=60.0,
 )
 """WPNAV_JERK: legs are S-curves, of which the driver takes the last 0.75 s, below 0.3 m/s, as arrived;
