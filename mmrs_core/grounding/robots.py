@@ -78,7 +78,7 @@ def _capability(capability: Element) -> Capability:
     )
 
 
-_LEG_FIGURES = {
+LEG_FIGURES = {
     "maxSpeed": "speed",
     "maxAcceleration": "acceleration",
     "maxDeceleration": "deceleration",
@@ -101,7 +101,7 @@ def _leg_timings(capability: Element) -> dict[str, dict[str, float]]:
     found: dict[str, dict[str, float]] = {"STEP": {}, "MISSION": {}}
     listed = sorted(children(capability, "legTimings"), key=lambda each: each.eIsSet("flownAs"))
     for each in listed:
-        values = {name: number(each, feature) for feature, name in _LEG_FIGURES.items()}
+        values = {name: number(each, feature) for feature, name in LEG_FIGURES.items()}
         known = {name: value for name, value in values.items() if value is not None}
         if "acceleration" in known:
             known.setdefault("deceleration", known["acceleration"])

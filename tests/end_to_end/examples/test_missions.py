@@ -28,15 +28,15 @@ JUSTIFIED_UNKNOWNS = {
 
 LONGEST = {
     "Carbon dioxide near L'Aquila": 1471.0,
-    "Course": 171.0,
-    "Dam inspection": 3567.0,
-    "Lost float": 204.0,
-    "Objects in the pool": 395.0,
-    "Outfall": 1209.0,
+    "Course": 172.0,
+    "Dam inspection": 3568.0,
+    "Lost float": 205.0,
+    "Objects in the pool": 396.0,
+    "Outfall": 1210.0,
     "Photos of a farm": 1068.0,
     "Recycling yard after a fire": 474.0,
     "Thermal inspection": 555.0,
-    "Two fields": 192.0,
+    "Two fields": 193.0,
 }
 """Seconds that missions take at most, by name: as planned so far, rounded up."""
 

@@ -36,13 +36,15 @@ def shown(value: float) -> str:
 
 
 def written(figures: Iterable[Figure], names: Iterable[str], flown_as: str = "") -> dict[str, str]:
-    """Return attributes that have a value, by name; one that is estimated as less than 0 is 0.
+    """Return attributes that have a value beyond doubt, by name; one estimated as less than 0 is 0.
 
     Args:
         names: that are asked for, in the order in which they are written.
         flown_as: how the legs were flown.
     """
-    found = {each.name: each for each in figures if each.values and each.flown_as == flown_as}
+    found = {
+        each.name: each for each in figures if each.values and not each.doubt and each.flown_as == flown_as
+    }
     return {name: shown(max(0.0, found[name].median)) for name in names if name in found}
 
 

@@ -49,6 +49,15 @@ CLEAR = 0.5
 COULOMBS = 3.6
 """In a milliampere-hour."""
 
+ENOUGH = 3
+"""Values of a figure at least that is to be written."""
+
+FROM_ALL = frozenset({"overshoot", "lifetime"})
+"""Figures of which a flight has one value, from all of it."""
+
+WIDEST, NOISE = 0.5, 1.0
+"""Spread of a figure at most, as a share of its median, and seconds that times may spread in any case."""
+
 
 @dataclass(frozen=True, slots=True)
 class Figure:
@@ -59,6 +68,7 @@ class Figure:
         flown_as: how the legs were flown that it holds for; empty: any.
         values: every time that it was seen, in ascending order.
         missing: why there is none; empty where there are values.
+        doubt: why it is not to be written; empty where it may be.
     """
 
     name: str
@@ -66,6 +76,7 @@ class Figure:
     flown_as: str = ""
     values: tuple[float, ...] = ()
     missing: str = ""
+    doubt: str = ""
 
     @property
     def median(self) -> float:
@@ -81,7 +92,23 @@ class Figure:
 
 def _figure(name: str, unit: str, values: Iterable[float], missing: str, flown_as: str = "") -> Figure:
     found = tuple(sorted(each for each in values if isfinite(each)))
-    return Figure(name, unit, flown_as, found, "" if found else missing)
+    if not found:
+        return Figure(name, unit, flown_as, (), missing)
+    return Figure(name, unit, flown_as, found, doubt="" if name in FROM_ALL else _doubt(found, unit))
+
+
+def _doubt(values: Sequence[float], unit: str = "") -> str:
+    """Return why a figure of these values is not to be written; empty where it may be."""
+    if len(values) < ENOUGH:
+        return f"fewer than {ENOUGH} values"
+    low, high = np.percentile(values, (10.0, 90.0))
+    most = max(WIDEST * abs(float(np.median(values))), NOISE if unit == "s" else 0.0)
+    return "its values differ by more than half of their median" if high - low > most else ""
+
+
+def _sure(values: Sequence[float], usual: float) -> float:
+    """Return the median of values, or what is usual where it is in doubt."""
+    return usual if isfinite(usual) and _doubt(values) else float(np.median(values))
 
 
 def fastest(values: Sequence[float], part: float = 0.9) -> list[float]:
@@ -120,7 +147,8 @@ class _Levels:
     least: float = 0.0
 
 
-def _levels(flight: Flight, flown_as: str) -> _Levels:
+def levels_of(flight: Flight, flown_as: str) -> _Levels:
+    """Return the level motion of one way of flying."""
     speeds, mode = level_speeds(flight), WAYS[flown_as]
     nothing = np.zeros(len(speeds), dtype=np.bool_)
     if flight.profile is None:
@@ -137,7 +165,7 @@ def _levels(flight: Flight, flown_as: str) -> _Levels:
 
 
 def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
-    level = _levels(flight, flown_as)
+    level = levels_of(flight, flown_as)
     still = _still(flight.profile)
 
     def figure(name: str, unit: str, values: Iterable[float], missing: str) -> Figure:
@@ -169,8 +197,15 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
     straight = list(legs_of(flight, level.ramps, still))
     gains = _gains(flight, straight)
     if speeding and jerks and tops:
-        a, d, j = (float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
-        usual = _usual(flight.profile, flown_as)
+        usual = usual_timing(flight.profile, flown_as)
+        a, j = _sure(fastest(speeding, 0.8), usual.acceleration), _sure(jerks, usual.jerk)
+        d = (
+            _sure(fastest(slowing, 0.8), usual.braking)
+            if slowing
+            else usual.braking
+            if usual.braking < inf
+            else a
+        )
         timing = LegTiming(acceleration=a, deceleration=d, jerk=j)
         legs = [each for each in straight if isfinite(each.done - each.begun)]
         lag, within = usual.lag, usual.lag_within
@@ -178,7 +213,7 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
             lag = float(np.median([each.lag for each in gains]))
             within = float(np.median([each.seconds for each in gains]))
         timing = replace(timing, lag=lag, lag_within=within)
-        overshoot, settled = _beside(legs, timing, max(tops))
+        overshoot, settled = _beside(legs, timing, max(tops), usual.overshoot)
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
     unclear = "the legs do not show it: fly short and long ones" if settled else missing
     if not (speeding and jerks and tops):
@@ -190,7 +225,7 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
     yield figure("lagTime", "s", (each.seconds for each in gains), even)
 
 
-def _usual(profile: VehicleProfile | None, flown_as: str) -> LegTiming:
+def usual_timing(profile: VehicleProfile | None, flown_as: str) -> LegTiming:
     """Return how a vehicle's autopilot takes legs, whose lag counts where the legs do not show it."""
     pacing = UNKNOWN if profile is None else profile.pacing
     return pacing.mission if flown_as == MISSION and pacing.mission is not None else pacing.step
@@ -209,26 +244,29 @@ def _decelerations(flight: Flight, level: _Levels, fitting: Iterable[Ramp], jerk
     return [value for each, value in found if each.change * jerk >= 1.5 * value**2]
 
 
-def _beside(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> tuple[float | None, list[float]]:
+def _beside(
+    legs: Sequence[Leg], timing: LegTiming, fastest: float, usual: float
+) -> tuple[float | None, list[float]]:
     """Return how far a vehicle goes beyond its targets, and what legs take beside their S-curves and that.
 
     A vehicle that goes beyond its target by a share of its speed takes the longer, the faster the leg was.
-    Where the legs do not show that clearly, it is unknown: None.
+    Where the legs do not show that clearly, it is unknown: None, and they go beyond it as usual.
 
     Args:
         timing: acceleration, deceleration and jerk.
         fastest: speed that was kept.
+        usual: how far its autopilot goes beyond targets.
     """
 
     def going(hundredths: int) -> LegTiming:
         return replace(timing, overshoot=hundredths / 100.0)
 
     tops = [each.speeding_up.high for each in legs]
-    plain = _lefts(legs, timing, fastest)
+    plain = lefts(legs, replace(timing, overshoot=usual), fastest)
     if len(legs) < FEWEST or max(tops) < 1.5 * min(tops):
         return None, plain
-    best = min(range(1, 31), key=lambda number: _width(_lefts(legs, going(number), fastest)))
-    left = _lefts(legs, going(best), fastest)
+    best = min(range(1, 31), key=lambda number: _width(lefts(legs, going(number), fastest)))
+    left = lefts(legs, going(best), fastest)
     return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (None, plain)
 
 
@@ -247,7 +285,7 @@ def _gains(flight: Flight, legs: Sequence[Leg]) -> list[Gain]:
     return found
 
 
-def _lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> list[float]:
+def lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> list[float]:
     """Return by how much legs took longer than they are planned to, in their order."""
     found, push = list[float](), STANDING
     for leg in legs:

@@ -11,7 +11,7 @@ from mmrs_core.cli.output import say, say_json, table, tell
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from mmrs_mavlink.calibration.figures import Figure
     from mmrs_mavlink.calibration.flight import Flight
@@ -67,13 +67,15 @@ def calibrate(
     if write and robot_type is None:
         raise typer.BadParameter("--write needs --robot-type, the file to write into")
     from mmrs_mavlink.calibration.figures import figures_of
+    from mmrs_mavlink.calibration.judging import judged
     from mmrs_mavlink.calibration.reading import flight_in
 
     flight = flight_in(log, system)
     for damage in flight.damages:
         tell(damage)
     given = _type_in(call, robot_type, payload) if robot_type is not None else None
-    figures = figures_of(flight, given.capacity if given is not None else None)
+    found = figures_of(flight, given.capacity if given is not None else None)
+    figures = judged(flight, found, lambda *figure: None if given is None else given.current(*figure))
     if given is not None and write:
         given.write(figures)
     if json:
@@ -116,7 +118,8 @@ def _plain_figure(figure: Figure, given: TypeFile | None) -> dict[str, object]:
     if figure.missing:
         return found | {"missing": figure.missing}
     low, high = figure.spread
-    return found | {"median": round(figure.median, 4), "low": round(low, 4), "high": round(high, 4)}
+    found |= {"median": round(figure.median, 4), "low": round(low, 4), "high": round(high, 4)}
+    return found | {"doubt": figure.doubt or None}
 
 
 def _lines(flight: Flight, figures: tuple[Figure, ...], given: TypeFile | None) -> Iterator[str]:
@@ -132,8 +135,10 @@ def _lines(flight: Flight, figures: tuple[Figure, ...], given: TypeFile | None) 
     ]
     yield from table(head, rows)
     yield ""
-    for why, names in _missing(figures).items():
+    for why, names in _by_cause(figures, lambda each: each.missing).items():
         yield f"not in this log: {', '.join(names)}: {why}"
+    for why, names in _by_cause(figures, lambda each: each.doubt).items():
+        yield f"not written: {', '.join(names)}: {why}"
     yield ""
     yield from element_lines(figures)
 
@@ -150,11 +155,10 @@ def _numbers(figure: Figure, given: TypeFile | None) -> tuple[str, ...]:
     return *found, "" if value is None else f"{value:g}"
 
 
-def _missing(figures: Iterable[Figure]) -> dict[str, list[str]]:
-    """Return the figures without values, by the cause."""
+def _by_cause(figures: Iterable[Figure], cause: Callable[[Figure], str]) -> dict[str, list[str]]:
+    """Return the figures that a cause keeps out, by it."""
     found: dict[str, list[str]] = {}
     for each in figures:
-        if each.missing:
-            cause = f"{each.missing} ({each.flown_as})" if each.flown_as else each.missing
-            found.setdefault(cause, []).append(each.name)
+        if why := cause(each):
+            found.setdefault(f"{why} ({each.flown_as})" if each.flown_as else why, []).append(each.name)
     return found

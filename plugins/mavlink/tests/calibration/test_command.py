@@ -11,7 +11,7 @@ from flown_curves import Curve, flown
 from mmrs_core.cli import run
 from mmrs_core.resources import shipped
 
-PLACES = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0)]
+PLACES = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 0.0, 20.0)]
 
 
 @pytest.fixture
@@ -24,8 +24,8 @@ def log(tmp_path):
 def test_figures_are_printed_with_number_and_spread_and_as_attributes(log, capsys):
     assert run(["calibrate", str(log)]) == 0
     printed = capsys.readouterr().out
-    assert "ArduCopter V4.7.0: 4" in printed
-    assert "  STEP      maxAcceleration  m/s²  3  2.5" in printed
+    assert "ArduCopter V4.7.0: 56 s" in printed
+    assert "  STEP      maxAcceleration  m/s²  4  2.5" in printed
     assert "not in this log: maxClimbRate, maxDescentRate, maxVerticalAcceleration: no upright leg" in printed
     assert '<legTimings flownAs="STEP" maxAcceleration="2.5' in printed
     assert '<movementCapabilities lifetime="2880"' in printed
@@ -36,7 +36,7 @@ def test_json_holds_every_figure_or_why_not(log, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["vehicle"] == "ArduCopter V4.7.0"
     figures = {(each["flown_as"], each["name"]): each for each in found["figures"]}
-    assert figures["STEP", "maxAcceleration"]["n"] == 3
+    assert figures["STEP", "maxAcceleration"]["n"] == 4
     assert figures["STEP", "maxAcceleration"]["low"] <= figures["STEP", "maxAcceleration"]["median"]
     assert figures["MISSION", "maxJerk"] == {
         "name": "maxJerk",
@@ -76,6 +76,16 @@ def test_figures_are_compared_with_a_type_and_written_into_it(log, tmp_path, cap
     assert b'<legTimings flownAs="STEP"' in file.read_bytes()
     (lifetime,) = (each for each in printed["figures"] if each["name"] == "lifetime")
     assert lifetime["type"] != pytest.approx(lifetime["median"], rel=0.01)
+
+
+def test_figures_of_few_values_are_told_and_not_written(log, capsys):
+    log.write_bytes(dataflash(flown(PLACES[:3], Curve()), watts=444.0))
+    assert run(["calibrate", str(log)]) == 0
+    printed = capsys.readouterr().out
+    few = next(line for line in printed.splitlines() if line.endswith("fewer than 3 values (STEP)"))
+    assert few.startswith("not written: ")
+    assert "maxJerk" in few
+    assert "<legTimings" not in printed
 
 
 def test_writing_needs_a_type(log, capsys):

@@ -11,7 +11,7 @@ from flown_curves import Curve, flown
 
 from mmrs_mavlink.calibration.figures import fastest, figures_of
 from mmrs_mavlink.calibration.reading import flight_in
-from mmrs_mavlink.profiles import profile_for
+from mmrs_mavlink.profiles import ARDUCOPTER, profile_for
 
 OUT_AND_BACK = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 15.0, 20.0)]
 UP_AND_DOWN = [(0.0, 0.0, 10.0), (0.0, 0.0, 40.0), (0.0, 0.0, 10.0), (0.0, 0.0, 40.0)]
@@ -32,7 +32,9 @@ def test_the_figures_of_level_legs_are_found_again(made, rate, noise, tmp_path):
     assert found["STEP", "maxAcceleration"].median == pytest.approx(2.5, rel=0.1)
     assert found["STEP", "maxDeceleration"].median == pytest.approx(1.5, rel=0.1)
     assert found["STEP", "maxJerk"].median == pytest.approx(5.0, rel=0.5)
-    assert found["STEP", "settlingTime"].median == pytest.approx(COPTER.pause, abs=2.0 / rate)
+    usual = ARDUCOPTER.pacing.step  # legs of one speed do not show how far it goes beyond its targets
+    beyond = usual.settled(8.0) - usual.settling
+    assert found["STEP", "settlingTime"].median == pytest.approx(COPTER.pause - beyond, abs=2.0 / rate)
     assert len(found["STEP", "maxAcceleration"].values) == 4
     assert {each.missing for (flown_as, _), each in found.items() if flown_as == "MISSION"} == {
         "not flown in auto"

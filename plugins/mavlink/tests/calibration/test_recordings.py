@@ -9,12 +9,16 @@ import csv
 import gzip
 import os
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 from flight_logs import Sample, telemetry
+from flown_times.comparison import compared
 
 from mmrs_mavlink.calibration.figures import figures_of
+from mmrs_mavlink.calibration.judging import judged
 from mmrs_mavlink.calibration.reading import flight_in
+from mmrs_mavlink.calibration.type_file import type_in
 
 FLIGHTS = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
 pytestmark = pytest.mark.skipif(
@@ -80,3 +84,28 @@ def test_wind_changes_the_figures_little(tmp_path):
 def test_rovers_and_submarines_have_figures_too(name, flown_as, acceleration, tmp_path):
     found = figures(name, tmp_path)
     assert found[flown_as, "maxAcceleration"].median == pytest.approx(acceleration, rel=0.15)
+
+
+FLOWN = sorted(each.parent for each in Path(FLIGHTS).glob("*/*.track.csv.gz")) if FLIGHTS else []
+AS_IT_IS = ("px4", "rover-arcs-stuck", "sub-")
+"""Flights without tracks, by an earlier driver, and of a type of an earlier metamodel."""
+
+
+@pytest.mark.parametrize(
+    "folder",
+    [each for each in dict.fromkeys(FLOWN) if not each.name.startswith(AS_IT_IS)],
+    ids=lambda each: each.name,
+)
+def test_a_plan_is_no_worse_by_the_figures_of_its_own_flight(folder, contributions, tmp_path):
+    copied = tmp_path / folder.name
+    copytree(folder, copied)
+    for track in folder.glob("*.track.csv.gz"):
+        kind = TYPES.get(folder.name.partition("-")[0], 2)
+        (tmp_path / "flight.tlog").write_bytes(telemetry(samples_of(track), mav_type=kind))
+        flight = flight_in(tmp_path / "flight.tlog")
+        (file,) = (copied / "robots").iterdir()
+        payload = 20.0 if kind == TYPES["rover"] else 0.0
+        type = type_in(file, contributions.languages, payload)
+        type.write(judged(flight, figures_of(flight, type.capacity), type.current))
+    for before, after in zip(compared(folder), compared(copied), strict=True):
+        assert abs(after.ratio - 1.0) <= abs(before.ratio - 1.0) + 0.002, after.line()
