@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from itertools import pairwise
 from math import dist, inf
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,9 @@ class Space:
     the shortest path around all that blocks there, and up or down to the goal; the quickest of several
     heights is taken. Where no single height will do, a search over several heights follows. At last,
     corners are cut by sloped legs where these are clear and quicker.
+
+    Attributes:
+        remembered: what robots that are alike have found out together.
     """
 
     def __init__(
@@ -62,6 +66,8 @@ class Space:
         self._obstacles = Obstacles(kept_from, clearance)
         self._visibility = Visibility(self._obstacles)
         self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
+        self.remembered: dict[Hashable, tuple[dict[Any, Any], dict[Any, Any]]] = {}
+        self._columns: dict[tuple[Position, Position], str] = {}
 
     def is_clear(self, polyline: Sequence[Position]) -> bool:
         """Return whether a polyline (one point or more) keeps its distance; touching counts as clear."""
@@ -70,6 +76,20 @@ class Space:
     def blockers(self, polyline: Sequence[Position]) -> str:
         """Return the names of the areas that a polyline is too near to, quoted; empty if it is clear."""
         return self._obstacles.names(self._blockers(polyline, spare=0.0))
+
+    def column_blockers(self, place: Position, height: float) -> str:
+        """Return the names of the areas that an upright leg is too near to; empty if it is clear.
+
+        Routes begin and end at few places: it is remembered.
+
+        Args:
+            place: one of its ends.
+            height: of the other.
+        """
+        key = place, (place[0], place[1], height)
+        if key not in self._columns:
+            self._columns[key] = self.blockers(key)
+        return self._columns[key]
 
     def _blockers(self, polyline: Sequence[Position], *, spare: float = EPSILON / 2) -> Flags:
         if self.empty:
@@ -107,7 +127,7 @@ class Space:
 
     def _search(self, start: Position, goal: Position) -> tuple[Position, ...] | str:
         for end, name in ((start, "start"), (goal, "goal")):
-            inside = self.blockers((end,))
+            inside = self.column_blockers(end, end[2])
             if inside:
                 return f"{name} {_words(end)} is within the clearance of {inside}"
         blockers = self._blockers((start, goal))

@@ -119,8 +119,10 @@ class Travel:
         self._altitude = None if aloft is None else self._within(aloft)
         self._leaving: dict[Position, Route | str] = {}
         self._returning: dict[Position, Route | str] = {}
-        self._between: dict[tuple[Position, Position], Route | str] = {}
-        self._hops: dict[tuple[Position, Position], Route] = {}
+        key = self.kinematics, self._altitude, fluid, self.uploading is None
+        self._between: dict[tuple[Position, Position], Route | str]
+        self._hops: dict[tuple[Position, Position], Route]
+        self._between, self._hops = space.remembered.setdefault(key, ({}, {}))
         self._bounds: dict[float | None, tuple[Rates, Rates, Rates]] = {}
         self._uploaded: dict[float | None, Rates] = {}
 
@@ -225,12 +227,11 @@ class Travel:
         if not self.kinematics.launches:
             return Route((start,), 0.0, 0.0)
         ground = ground_height(start, self.robot.home)
-        column = (start, (start[0], start[1], ground))
-        below = self.space.blockers(column)
+        below = self.space.column_blockers(start, ground)
         if below:
             raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
         down = self._upright(self.kinematics.landing(start[2] - ground))
-        return self._route((start,), down, length_of(column), ground)
+        return self._route((start,), down, start[2] - ground, ground)
 
     def _timed(self, points: tuple[Position, ...]) -> Route:
         return self._route(points, self._gone(points), length_of(points))
@@ -308,7 +309,7 @@ class Travel:
     def _above_home(self, height: float) -> tuple[Position, str]:
         home = self.robot.home
         above = (home[0], home[1], height)
-        near = self.space.blockers((home, above))
+        near = self.space.column_blockers(home, height)
         return above, f"home of robot '{self.robot.name}' is within the clearance of {near}" if near else ""
 
     def _across(self, start: Position, goal: Position) -> Route | str:
@@ -328,7 +329,7 @@ class Travel:
     def _raised(self, start: Position, goal: Position, level: float) -> tuple[Position, ...] | None:
         """Return a route up to a level, along it, and down to the goal; None where that is blocked."""
         up, over = (start[0], start[1], level), (goal[0], goal[1], level)
-        if not (self.space.is_clear((start, up)) and self.space.is_clear((over, goal))):
+        if self.space.column_blockers(start, level) or self.space.column_blockers(goal, level):
             return None
         try:
             route = (start, *self.space.route(up, over), goal)
