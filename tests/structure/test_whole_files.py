@@ -24,6 +24,8 @@ def pytest_xdist_make_scheduler(config, log):
 FILES = {
     "test_cases.py": "import pytest\n@pytest.mark.parametrize('n', range(3))\ndef test_n(n): assert n != 1\n",
     "test_crash.py": "import os\ndef test_before(): pass\ndef test_crash(): os._exit(3)\n",
+    "test_fixtures.py": "import pytest\n@pytest.fixture\ndef early(): assert False\n@pytest.fixture\n"
+    "def late():\n yield\n assert False\ndef test_begins(early): pass\ndef test_ends(late): pass\n",
     "test_import.py": "import nothing_of_that_name\n",
     "test_skipped.py": "import pytest\npytest.skip('all of it', allow_module_level=True)\n",
     "test_unselected.py": "def test_other(): assert False\n",
@@ -41,6 +43,8 @@ def test_every_test_of_every_file_is_run_once(tmp_path):
     )
     ended = re.findall(r"^\[gw\d\] +\[ *\d+%\] (\w+) (\S+)", done.stdout, re.MULTILINE)
     assert sorted(ended) == [
+        ("ERROR", "test_fixtures.py::test_begins"),
+        ("ERROR", "test_fixtures.py::test_ends"),
         ("FAILED", "test_cases.py::test_n[1]"),
         ("FAILED", "test_crash.py::*"),
         ("PASSED", "test_after.py::test_one"),
@@ -48,7 +52,8 @@ def test_every_test_of_every_file_is_run_once(tmp_path):
         ("PASSED", "test_cases.py::test_n[0]"),
         ("PASSED", "test_cases.py::test_n[2]"),
         ("PASSED", "test_crash.py::test_before"),
+        ("PASSED", "test_fixtures.py::test_ends"),
     ], done.stdout
     assert "ERROR test_import.py" in done.stdout
-    assert "2 failed, 5 passed, 1 skipped, 1 error" in done.stdout
+    assert "2 failed, 6 passed, 1 skipped, 3 errors" in done.stdout
     assert done.returncode == 1
