@@ -177,6 +177,7 @@ def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program
 def verify(program: Program, place: BehaviourContext, contributions: Contributions) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
     from mmrs_core.analysis.verdicts import verify as verified
+    from mmrs_core.generation.safety import rally_points_by_policy
 
     given = CheckInput(
         program=program,
@@ -187,6 +188,9 @@ def verify(program: Program, place: BehaviourContext, contributions: Contributio
         environment=place.environment or {},
         elements=place.elements,
         tasks=place.tasks,
+        rally_points=rally_points_by_policy(
+            program, place.types, contributions.robot_kinds, place.areas or ()
+        ),
     )
     return verified(given, contributions.checks)
 

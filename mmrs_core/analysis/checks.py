@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mmrs_core.analysis.clearance import CLEARANCE
+from mmrs_core.analysis.diversions import DIVERSION
 from mmrs_core.analysis.endurance import ENDURANCE, ENERGY, RECHARGE_CHECK
 from mmrs_core.analysis.envelope import ALTITUDE, DEPTH, RANGE, TEMPERATURE, WIND
 from mmrs_core.analysis.equipment import DEVICES, PAYLOAD, SPEED
@@ -22,6 +23,7 @@ CHECKS: tuple[Check, ...] = (
     ENDURANCE,
     ENERGY,
     RECHARGE_CHECK,
+    DIVERSION,
     STATES,
     SEPARATION,
     SPEED,

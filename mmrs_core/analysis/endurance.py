@@ -47,7 +47,8 @@ CHARGER_REACH = 1.0
 """Metres around home within which batteries can be recharged."""
 
 
-def _sorties(input: CheckInput) -> dict[str, Sorties]:
+def sorties_of_all(input: CheckInput) -> dict[str, Sorties]:
+    """Return the sorties of every robot by its identifier."""
     return {robot.id: sorties_of(input, robot) for robot in input.program.robots}
 
 
@@ -56,8 +57,8 @@ def _judge_endurance(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict
     if lifetime is None:
         yield not_checked(ENDURANCE_NAME, robot, "it has no batteries and no lifetime: it is wired")
         return
-    allowed = lifetime * (1.0 - input.program.reserve)
-    sorties = once(input, _sorties)[robot.id]
+    allowed = _usable(input, lifetime)
+    sorties = once(input, sorties_of_all)[robot.id]
     yield from _judged_uses(ENDURANCE_NAME, robot, sorties, (1.0, 1.0), allowed, "s", lifetime)
 
 
@@ -70,10 +71,27 @@ def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not lifetime:
         raise MissingFigureError(f"{robot.id}: its lifetime, from which its power follows, is not given")
     allowed = stored * (1.0 - input.program.reserve)
-    sorties = once(input, _sorties)[robot.id]
+    sorties = once(input, sorties_of_all)[robot.id]
     mean = stored / lifetime
     most = mean * kinematics_of(input, robot).draw if sorties.uses else mean
     yield from _judged_uses(ENERGY_NAME, robot, sorties, (mean, most), allowed, "J", lifetime)
+
+
+def allowed_seconds(input: CheckInput, robot: RobotProgram) -> float:
+    """Return how long a robot may run on one charge at the most power; inf for a wired one.
+
+    Raises:
+        MissingFigureError: its lifetime is not given.
+    """
+    lifetime = _lifetime(input, robot)
+    if lifetime is None:
+        return inf
+    draw = kinematics_of(input, robot).draw if type_of(input, robot).batteries else 1.0
+    return _usable(input, lifetime) / draw
+
+
+def _usable(input: CheckInput, lifetime: float) -> float:
+    return lifetime * (1.0 - input.program.reserve)
 
 
 def _lifetime(input: CheckInput, robot: RobotProgram) -> float | None:

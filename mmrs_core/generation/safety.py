@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
 
-from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.contributions.rules import robot_kind_of
+from mmrs_core.behaviour.program import Program, RobotProgram
+from mmrs_core.behaviour.rally_points import rally_points_of
+from mmrs_core.contributions.rules import RobotKind, robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.scene import Area, Policy, RobotType
-from mmrs_runtime.policies import AFTER, in_precedence
+from mmrs_core.scene import Area, Name, Point, Policy, RobotType
+from mmrs_runtime.policies import AFTER, ESCAPE, in_precedence
 
 
 def areas_of(robot: RobotProgram, input: TargetInput) -> tuple[Area, ...]:
@@ -27,13 +29,35 @@ def policies_of(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
 
     Those of single waits go before all of them and stay with their transitions.
     """
-    type = input.types.get(robot.type_name)
-    kind = robot_kind_of(type, input.robot_kinds) if type is not None else None
+    return effective_policies(robot, input.types.get(robot.type_name), input.robot_kinds)
+
+
+def effective_policies(
+    robot: RobotProgram, type: RobotType | None, kinds: Mapping[Name, RobotKind]
+) -> tuple[Policy, ...]:
+    """Return the same for a robot of a type, None: unknown, and robot kinds by metaclass."""
+    kind = robot_kind_of(type, kinds) if type is not None else None
     of_type, of_kind = type.policies if type else (), kind.policies if kind else {}
     found: dict[str, Policy] = {}
     for policy in in_precedence((), robot.policies, of_type, of_kind):
         found.setdefault(policy.event, explicit(policy))
     return tuple(found.values())
+
+
+def rally_points_by_policy(
+    program: Program,
+    types: Mapping[str, RobotType],
+    kinds: Mapping[Name, RobotKind],
+    areas: tuple[Area, ...],
+) -> dict[str, tuple[Point, ...]]:
+    """Return the rally points of the robots that a policy may lead to an emergency area, by robot."""
+    found = {}
+    for robot in program.robots:
+        everywhere = effective_policies(robot, types.get(robot.type_name), kinds)
+        policies = [*everywhere, *(each for t in robot.transitions.values() for each in t.policies)]
+        if any(each.response == ESCAPE for each in policies):
+            found[robot.id] = rally_points_of(robot, program, types, areas).points
+    return found
 
 
 def explicit(policy: Policy) -> Policy:
