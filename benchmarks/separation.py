@@ -2,7 +2,8 @@
 
 The peer builds an STRtree of (east, time) rectangles, filters by the other coordinates, and computes the
 closest approach of the pairs that are left; both must find the same pairs. Seconds are of CPU, the least of
-five runs of each in turn; what numba compiles is compiled before.
+five runs of each in turn; what numba compiles is compiled before. `check` is the independent check's search
+for pairs that it looks at more closely: their paths come too near, and their times overlap.
 
     python benchmarks/separation.py --seed 1 > benchmarks/results/separation.txt
 """
@@ -24,6 +25,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from plain_scenes import robot, scene, visit
 
+from mmrs_core.analysis.occupations import Occupation
+from mmrs_core.analysis.separation import near_occupations
 from mmrs_core.planning import sweep
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.proximity import Pieces, Proximity
@@ -37,7 +40,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     seed = parser.parse_args().seed
     print(f"separation, {date.today().isoformat()}, seed {seed}, {APART:g} m apart")
-    print(f"{'robots':>7}{'pieces':>8}{'meetings':>9}{'STRtree s':>11}{'numpy':>18}{'numba':>18}")
+    print(
+        f"{'robots':>7}{'pieces':>8}{'meetings':>9}{'STRtree s':>11}{'numpy':>18}{'numba':>18}{'check':>18}"
+    )
     for robots, side in ((10, 1000.0), (100, 2000.0), (1000, 5000.0)):
         pieces = fleet(np.random.default_rng(seed), robots, 100, side)
         ours, theirs, seconds = None, None, np.full(3, np.inf)
@@ -50,6 +55,13 @@ def main() -> None:
                 ours, theirs = (ours, found) if many is None else (found, theirs)
                 assert ours is None or theirs is None or np.array_equal(ours, theirs)
         ratios = "".join(f"{each:9.4f} ({seconds[0] / each:5.1f}x)" for each in seconds[1:])
+        known, checked = occupations(pieces), np.inf
+        for _ in range(3):
+            begun = process_time()
+            near = near_occupations(known, APART)
+            checked = min(checked, process_time() - begun)
+        assert set(ours.tolist()) <= {i * len(pieces) + j for i, j in near}
+        ratios += f"{checked:9.4f} ({seconds[0] / checked:5.1f}x)"
         print(f"{robots:7}{len(pieces):8}{len(ours):9}{seconds[0]:11.4f}{ratios}")
     print("\n20 robots, 100 tasks within a square kilometre, one plan each")
     for apart in (None, 5.0):
@@ -75,6 +87,19 @@ def fleet(rng: np.random.Generator, robots: int, legs: int, side: float) -> Piec
     none = np.zeros(robots * legs, np.intp)
     owners = np.repeat(np.arange(robots), legs)
     return Pieces(owners, none, none, spans, places, spans[:, 1] - spans[:, 0], none * 0.0, none)
+
+
+def occupations(pieces: Pieces) -> list[Occupation]:
+    """Return the same pieces as the check has them."""
+    sure = (np.inf, -np.inf)
+    return [
+        Occupation(
+            f"r{who}", k, False, (tuple(begin), tuple(end)), 0.0, first, last, (last - first,), sure, None
+        )
+        for k, (who, (begin, end), (first, last)) in enumerate(
+            zip(pieces.owners.tolist(), pieces.places.tolist(), pieces.times.tolist(), strict=True)
+        )
+    ]
 
 
 def mine(pieces: Pieces) -> np.ndarray:

@@ -8,12 +8,13 @@ lid. Between these places the vertical distance is linear, so nothing is missed.
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mmrs_core.scene import Ring
+from mmrs_core.scene import Position, Ring
 
 Floats: TypeAlias = NDArray[np.float64]
 Flags: TypeAlias = NDArray[np.bool_]
@@ -110,6 +111,40 @@ def paired_distances(p: Floats, q: Floats, c: Floats, d: Floats) -> Floats:
     squares = [_square(w + s[..., None] * u - t[..., None] * v) for s, t in candidates]
     nearest: Floats = np.sqrt(np.minimum.reduce(squares))
     return nearest
+
+
+def segment_distance(p: Position, q: Position, c: Position, d: Position) -> float:
+    """Return the distance between two segments as `paired_distances` does, without its cost for one pair."""
+    u, v, w = _minus(q, p), _minus(d, c), _minus(p, c)
+    uu, uv, vv, uw, vw = _inner(u, u), _inner(u, v), _inner(v, v), _inner(u, w), _inner(v, w)
+    determinant = uu * vv - uv * uv
+    candidates = (
+        (_ratio(uv * vw - vv * uw, determinant), _ratio(uu * vw - uv * uw, determinant)),
+        (0.0, _ratio(vw, vv)),
+        (1.0, _ratio(vw + uv, vv)),
+        (_ratio(-uw, uu), 0.0),
+        (_ratio(uv - uw, uu), 1.0),
+    )
+    return sqrt(
+        min(
+            (w[0] + s * u[0] - t * v[0]) ** 2
+            + (w[1] + s * u[1] - t * v[1]) ** 2
+            + (w[2] + s * u[2] - t * v[2]) ** 2
+            for s, t in candidates
+        )
+    )
+
+
+def _minus(a: Position, b: Position) -> Position:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def _inner(a: Position, b: Position) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _ratio(a: float, b: float) -> float:
+    return min(1.0, max(0.0, a / b)) if b > 0.0 else 0.0
 
 
 def contains(corners: Floats, points: Floats) -> Flags:

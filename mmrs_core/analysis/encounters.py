@@ -15,7 +15,7 @@ from math import inf
 import numpy as np
 
 from mmrs_core.analysis.dependencies import certain_moves
-from mmrs_core.analysis.distance import Floats, paired_distances
+from mmrs_core.analysis.distance import Floats, paired_distances, segment_distance
 from mmrs_core.analysis.occupations import Occupation
 from mmrs_core.analysis.order import HappensBefore
 from mmrs_core.analysis.times import times_of
@@ -199,6 +199,8 @@ def _certainly(occupation: Occupation, begin: float, end: float) -> bool:
 
 def apart(one: tuple[Position, ...], other: tuple[Position, ...]) -> float:
     """Return the distance of two paths, metres."""
+    if len(one) <= 2 and len(other) <= 2:
+        return segment_distance(one[0], one[-1], other[0], other[-1])
     p, q = _pieces(one)
     c, d = _pieces(other)
     return float(paired_distances(p[:, None], q[:, None], c[None], d[None]).min())

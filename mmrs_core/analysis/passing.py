@@ -36,7 +36,7 @@ MOST_PAIRS = 10_000_000
 def in_sequence(
     robot: RobotProgram, motion: Motion, occupations: Collection[Occupation]
 ) -> list[Occupation] | None:
-    """Return a robot's occupations in order; None if its Choices, loops or unknown paths leave it open."""
+    """Return a robot's own occupations in order; None if Choices, loops or unknown paths leave it open."""
     order: dict[int, int] = {}
     move: int | None = robot.start
     while move is not None:
@@ -47,7 +47,7 @@ def in_sequence(
         move = transition.to if transition is not None else None
     if motion.gaps or sorted(order) != sorted(leg.move for leg in motion.paths):
         return None
-    return sorted((each for each in occupations if each.robot == robot.id), key=lambda each: order[each.move])
+    return sorted(occupations, key=lambda each: order[each.move])
 
 
 def must_meet(

@@ -12,13 +12,16 @@ check, and only waits for each other are proof. Robots at homes that are nearer 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import dist, inf
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
+from mmrs_core.analysis.distance import paired_distances
 from mmrs_core.analysis.encounters import (
     Encounter,
     ProvenOrder,
@@ -37,6 +40,9 @@ from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 from mmrs_core.diagnostics import lengths
 
 NAME = "separation"
+
+_A_SLICE = 2000
+"""Occupations that begin in one slice of time, about."""
 
 
 def _run(input: CheckInput) -> Iterator[Verdict]:
@@ -62,7 +68,9 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
     needed = least + 2.0 * input.program.position_error
     excused: dict[tuple[str, str], float] = {}
     encounters = list(_encounters(input, occupations, needed, excused))
-    worst = [_judged(input, each, encounters, occupations) for each in _worst(encounters)]
+    proper = _by_robot(each for each in occupations if not each.overshot)
+    met = _by_robots(encounters)
+    worst = [_judged(input, each, met, proper) for each in _worst(encounters)]
     yield from (_verdict(input, encounter) for encounter in worst)
     if not worst and not undecided:
         words = f"robots keep {needed:.2f} m apart wherever they may be at once"
@@ -107,7 +115,7 @@ def _encounters(
 ) -> Iterator[Encounter]:
     """Yield the encounters; add the robots that are excused, and how near their homes are, to `excused`."""
     order: ProvenOrder | None = None
-    for i, j in _near(occupations, needed):
+    for i, j in near_occupations(occupations, needed):
         one, other = occupations[i], occupations[j]
         if _excused(one, other, needed):
             excused[one.robot, other.robot] = _between_homes(one, other)
@@ -118,28 +126,46 @@ def _encounters(
             yield from [found] if found is not None else []
 
 
-def _near(occupations: list[Occupation], needed: float) -> list[tuple[int, int]]:
-    """Return the pairs of different robots whose paths are too near and whose times overlap."""
-    boxes = np.array([_box(each) for each in occupations]).reshape(-1, 4)
-    shapes = shapely.box(*boxes.T)
-    reach = needed + max((each.radius for each in occupations), default=0.0) * 2
-    grown = shapely.box(*(boxes + np.array([-reach, -reach, reach, reach])).T)
-    first, second = shapely.STRtree(shapes).query(grown)
-    found = dict.fromkeys(
-        (int(i), int(j))
-        for i, j in zip(first, second, strict=True)
-        if i < j and _may_meet(occupations[i], occupations[j])
-    )
-    return [
+def near_occupations(occupations: Sequence[Occupation], needed: float) -> list[tuple[int, int]]:
+    """Return the pairs of different robots whose paths are too near and whose times overlap, in order."""
+    if not occupations:
+        return []
+    pairs = np.concatenate([*_near_boxes(occupations, needed)])
+    ends = np.array([(each.points[0], each.points[-1]) for each in occupations])
+    bent = np.array([len(each.points) > 2 for each in occupations])[pairs].any(axis=1)
+    away = paired_distances(*(ends[pairs[:, one], side] for one in (0, 1) for side in (0, 1)))
+    found = [
         (i, j)
-        for i, j in found
-        if apart(occupations[i].points, occupations[j].points)
+        for (i, j), curved, straight in zip(pairs.tolist(), bent.tolist(), away.tolist(), strict=True)
+        if (apart(occupations[i].points, occupations[j].points) if curved else straight)
         < required(occupations[i], occupations[j], needed)
     ]
+    return sorted(found)
 
 
-def _may_meet(one: Occupation, other: Occupation) -> bool:
-    return one.robot != other.robot and max(one.begin, other.begin) < min(one.end, other.end)
+def _near_boxes(occupations: Sequence[Occupation], needed: float) -> Iterator[NDArray[np.intp]]:
+    """Yield (n, 2) pairs, the lower index first, of different robots whose boxes in space and time are near.
+
+    Slice of time by slice of time, a pair in that in which the later one begins: an index over all the time
+    would find robots that pass the same place one long after the other.
+    """
+    boxes = np.array([_box(each) for each in occupations])
+    times = np.array([(each.begin, each.end) for each in occupations])
+    robots = np.unique([each.robot for each in occupations], return_inverse=True)[1]
+    low, high = boxes[:, :3], boxes[:, 3:]
+    reach = needed + 2.0 * max(each.radius for each in occupations)
+    order = np.argsort(times[:, 0], kind="stable")
+    place = np.argsort(order)
+    for begun in np.array_split(order, max(1, len(order) // _A_SLICE)):
+        present = np.flatnonzero((times[:, 0] <= times[begun[-1], 0]) & (times[:, 1] > times[begun[0], 0]))
+        shapes = shapely.STRtree(shapely.box(*low[present, :2].T, *high[present, :2].T))
+        grown = shapely.box(*(low[begun, :2] - reach).T, *(high[begun, :2] + reach).T)
+        i, j = shapes.query(grown)
+        i, j = begun[i], present[j]
+        near = (place[i] > place[j]) & (robots[i] != robots[j])
+        near &= np.maximum(times[i, 0], times[j, 0]) < np.minimum(times[i, 1], times[j, 1])
+        near &= (low[i, 2] <= high[j, 2] + reach) & (low[j, 2] <= high[i, 2] + reach)
+        yield np.sort(np.column_stack([i[near], j[near]]), axis=1)
 
 
 def _excused(one: Occupation, other: Occupation, needed: float) -> bool:
@@ -178,10 +204,9 @@ def _over_home(occupation: Occupation, neighbour: Occupation, needed: float) -> 
     return not above or apart(above, neighbour.points) >= needed - TOLERANCE
 
 
-def _box(occupation: Occupation) -> tuple[float, float, float, float]:
-    east = [point[0] for point in occupation.points]
-    north = [point[1] for point in occupation.points]
-    return min(east), min(north), max(east), max(north)
+def _box(occupation: Occupation) -> tuple[float, ...]:
+    sides = [*zip(*occupation.points, strict=True)]
+    return (*map(min, sides), *map(max, sides))
 
 
 def _worst(encounters: Iterable[Encounter]) -> list[Encounter]:
@@ -194,21 +219,36 @@ def _worst(encounters: Iterable[Encounter]) -> list[Encounter]:
     return list(worst.values())
 
 
+def _by_robot(occupations: Iterable[Occupation]) -> dict[str, list[Occupation]]:
+    found: dict[str, list[Occupation]] = defaultdict(list)
+    for each in occupations:
+        found[each.robot].append(each)
+    return found
+
+
+def _by_robots(encounters: Iterable[Encounter]) -> dict[tuple[str, str], list[tuple[Occupation, Occupation]]]:
+    """Return, by robots, the occupations that meet, but for those beyond the ends of moves."""
+    found: dict[tuple[str, str], list[tuple[Occupation, Occupation]]] = defaultdict(list)
+    for each in encounters:
+        if not (each.one.overshot or each.other.overshot):
+            found[each.one.robot, each.other.robot].append((each.one, each.other))
+    return found
+
+
 def _judged(
-    input: CheckInput, worst: Encounter, found: Iterable[Encounter], occupations: Collection[Occupation]
+    input: CheckInput,
+    worst: Encounter,
+    met: Mapping[tuple[str, str], Collection[tuple[Occupation, Occupation]]],
+    proper: Mapping[str, Collection[Occupation]],
 ) -> Encounter:
     """Return the worst encounter of two robots, decided if they cannot but come too near somewhere."""
     if worst.decided:
         return worst
     names = worst.one.robot, worst.other.robot
-    proper = [each for each in occupations if not each.overshot]
-    one, other = (in_sequence(input.program.robot(name), motions(input)[name], proper) for name in names)
-    near = [
-        (each.one, each.other)
-        for each in found
-        if (each.one.robot, each.other.robot) == names and not (each.one.overshot or each.other.overshot)
-    ]
-    if one is None or other is None or not must_meet(one, other, near, worst.needed):
+    one, other = (
+        in_sequence(input.program.robot(name), motions(input)[name], proper[name]) for name in names
+    )
+    if one is None or other is None or not must_meet(one, other, met[names], worst.needed):
         return worst
     return replace(worst, decided=True, anyhow=True)
 

@@ -9,7 +9,7 @@ from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.analysis.distance import contains, prism_distances, segment_distances
+from mmrs_core.analysis.distance import contains, prism_distances, segment_distance, segment_distances
 from mmrs_core.geometry.segments import prism_distance
 
 LENGTHS = st.floats(-50.0, 50.0).map(lambda x: round(x, 3))
@@ -111,3 +111,10 @@ def test_many_legs_are_looked_at_in_pieces_with_the_same_result():
 def test_no_legs_have_no_distances():
     empty = np.empty((0, 3))
     assert prism_distances(empty, empty, ((0, 0), (1, 0), (0, 1)), 0.0, 1.0).size == 0
+
+
+@settings(max_examples=many(750))
+@given(POINTS, POINTS, POINTS, POINTS)
+def test_one_pair_of_segments_is_as_far_apart_as_among_many(p, q, c, d):
+    arrays = (np.array([each]) for each in (p, q, c, d))
+    assert segment_distance(p, q, c, d) == pytest.approx(float(segment_distances(*arrays)[0, 0]), abs=1e-9)

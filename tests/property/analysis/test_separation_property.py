@@ -1,16 +1,21 @@
 """The check of separation against robots sampled on their ways."""
 
-from itertools import pairwise
-from math import dist
+from itertools import combinations, pairwise
+from math import dist, inf
 from random import Random
 
 import numpy as np
+import pytest
 from checking import findings, given, uneven
 from counts import many
 from hypothesis import assume, settings
 from hypothesis import given as for_all
 from hypothesis import strategies as st
 
+from mmrs_core.analysis import separation
+from mmrs_core.analysis.encounters import apart, required
+from mmrs_core.analysis.occupations import Occupation
+from mmrs_core.analysis.separation import near_occupations
 from mmrs_core.contributions.checks import Status
 from mmrs_core.testing.small_programs import go, hold, notify, robot
 
@@ -159,3 +164,30 @@ def test_robots_called_violated_on_one_line_come_too_near_however_long_their_mov
             for robot, tour in enumerate((first, second))
         )
         assert np.linalg.norm(one - other, axis=1).min() < least + 4 * SPEED * STEP
+
+
+def occupation(rng, owners):
+    """Return a straight path, or a stand, of a random robot at some time; some have no end."""
+    begin = float(rng.uniform(0.0, 100.0))
+    end = inf if rng.random() < 0.1 else begin + float(rng.uniform(0.0, 20.0))
+    points = [tuple(each) for each in rng.uniform(0.0, 60.0, (int(rng.integers(1, 4)), 3)).tolist()]
+    radius = float(rng.choice([0.0, 3.0]))
+    robot, least = f"r{rng.integers(owners)}", (1.0,) * (len(points) - 1)
+    return Occupation(robot, 0, False, tuple(points), radius, begin, end, least, (inf, -inf), None)
+
+
+@settings(max_examples=many(60))
+@for_all(st.integers(0, 2**32), st.integers(0, 80), st.sampled_from([1, 7, 2000]))
+def test_near_occupations_are_all_those_whose_paths_and_times_are_too_near(seed, count, a_slice):
+    rng = np.random.default_rng(seed)
+    known = [occupation(rng, 4) for _ in range(count)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(separation, "_A_SLICE", a_slice)
+        found = near_occupations(known, 8.0)
+    assert found == [
+        (i, j)
+        for i, j in combinations(range(count), 2)
+        if known[i].robot != known[j].robot
+        and max(known[i].begin, known[j].begin) < min(known[i].end, known[j].end)
+        and apart(known[i].points, known[j].points) < required(known[i], known[j], 8.0)
+    ]
