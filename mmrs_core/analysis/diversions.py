@@ -1,6 +1,6 @@
 """Whether robots that go to an emergency area when something fails can do so from everywhere on their paths.
 
-A diversion begins where a move ends: in the middle of a move a robot goes on to its end. From there it goes
+A diversion begins where a move ends: in the middle of a move a robot continues to its end. From there it goes
 straight to its rally point, or along its path to where the next move ends; where areas are in the way of the
 straight line, around them. Every leg is measured against the areas as drawn, so that it does not matter how
 a detour was found. What was used of the charge by then, and what the diversion takes, are both the most.

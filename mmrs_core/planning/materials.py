@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import ceil, floor, inf
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.diversions import Diversions
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.sorties import Pilot
@@ -133,7 +134,7 @@ def layout_of(work: Work, pilot: Pilot, robots: int, *, coarsest: float = 0.0, f
     parts = [part for stroke in work.strokes for part in parts_of(stroke)]
     seconds = [serve_seconds(part, pilot.robot, pilot.kinematics) for part in parts]
     target = max(sum(seconds) / (_PORTIONS_PER_ROBOT * robots), coarsest)
-    target = min(target, pilot.limit / _PORTIONS_PER_CHARGE)
+    target = min(target, pilot.charge / _PORTIONS_PER_CHARGE)
     target = 0.0 if fine else target
     turns = not work.ordered and work.entry is None and all(can_turn(stroke) for stroke in work.strokes)
     return Layout(tuple(_gathered(parts, seconds, target)), turns)
@@ -199,6 +200,8 @@ def faults(work: Work, pilot: Pilot) -> Iterator[str]:
     if not pilot.kinematics.cruise > 0:
         yield "its cruise speed is zero"
         return
+    if pilot.limit <= 0.0 and pilot.diversions is not None:
+        yield _no_diversion(pilot, pilot.diversions)
     yield from _height_faults(work.strokes, pilot)
     for stroke in work.strokes:
         near = pilot.travel.space.blockers(stroke.points)
@@ -249,8 +252,25 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
     elif short[worst] > 1e-9:
         yield (
             f"{_words(material, worst)} takes up to {ceil(pilot.limit + short[worst])} s there and back; one"
-            f" charge allows {floor(pilot.limit)} s: {ceil(short[worst])} s short"
+            f" charge allows {floor(pilot.limit)} s{_kept(pilot)}: {ceil(short[worst])} s short"
         )
+
+
+def _no_diversion(pilot: Pilot, diversions: Diversions) -> str:
+    """Return why a robot whose charge does not suffice for any diversion cannot set out."""
+    why = f"(policy {', '.join(diversions.events)})"
+    if diversions.from_home == inf:
+        return f"no emergency area can be reached from its home {why}"
+    return (
+        f"from its home to an emergency area {why} it takes up to {ceil(diversions.from_home)} s; one charge"
+        f" allows {floor(pilot.charge)} s: {ceil(diversions.from_home - pilot.charge)} s short"
+    )
+
+
+def _kept(pilot: Pilot) -> str:
+    """Return what is kept of a charge for a diversion; empty where nothing is."""
+    kept = pilot.charge - pilot.limit
+    return f" beside {ceil(kept)} s kept to reach an emergency area from home" if kept > 0.5 else ""
 
 
 def _why_unreachable(material: Material, pilot: Pilot, index: int) -> str:
@@ -282,5 +302,5 @@ def _longest_sortie(material: Material, pilot: Pilot, index: int) -> float:
     routes = [pilot.travel.leave(approach.via[0])]
     routes += [pilot.travel.hop(one, two) for one, two in pairwise(approach.via)]
     out = sum(pilot.travel.at_speed(route, approach.speed).longest for route in routes)
-    back = pilot.exit_route(material.last(index)).longest
-    return pilot.fresh + out + material.longest(index, index) + back + pilot.stopping
+    pilot.exit_route(material.last(index))
+    return pilot.fresh + out + material.longest(index, index) + pilot.exit_longest(material.last(index))

@@ -13,11 +13,13 @@ from typing import Protocol
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.bounds import least_makespan
+from mmrs_core.planning.charges import most_used
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.remedies import (
     counted,
     for_all_charges,
+    for_diversions,
     for_times,
     or_else,
     too_long,
@@ -33,6 +35,7 @@ from mmrs_core.planning.separation import (
 )
 from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.scene import Plan, Scene
+from mmrs_runtime.policies import RETURN, Policy
 
 
 class _Find(Protocol):
@@ -60,7 +63,9 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     """
     jobs = jobs_of(scene)
     team = Team(scene)
-    if short := [*team.shortfalls(), *_shared_choices(scene, jobs)]:
+    if (found := _leaving_enough(team, seed, effort)) is not None:
+        return found
+    if short := [*_with_remedies(team, jobs), *_shared_choices(scene, jobs)]:
         able = [job for job in jobs if all(map(team.able, job.tasks()))]
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
     teams, effort = _Remembered(teams_to_try(team)), effort or Effort()
@@ -82,6 +87,24 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return replace(found, lower_bound=effort.least)
+
+
+def _leaving_enough(team: Team, seed: int, effort: Effort | None) -> Plan | None:
+    """Return a plan made without a thought of emergency areas that leaves enough to reach them; None: none.
+
+    What must be kept for that hardly ever binds where robots return, and would only narrow the search.
+    """
+    diverting = {name: each.diversions for name, each in team.pilots.items() if each.diversions is not None}
+    if not diverting or not all(team.scene.robot(name).return_home for name in diverting):
+        return None
+    events = dict.fromkeys(event for each in diverting.values() for event in each.events)
+    policies = (*(Policy(event, RETURN) for event in events), *team.scene.policies)
+    with suppress(InfeasibleError):
+        found = plan(replace(team.scene, policies=policies), seed=seed, effort=effort)
+        used, away = most_used(found, team.pilots), {each.robot for each in found.robots if each.steps}
+        if all(used[name] <= team.pilots[name].limit for name in away & diverting.keys()):
+            return found
+    return None
 
 
 def _cost(made: Plan) -> tuple[float, float]:
@@ -246,6 +269,14 @@ def _plan_of(
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
     _refuse_late(team, jobs, spans)
     return first, made
+
+
+def _with_remedies(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
+    """Yield what makes tasks impossible, with what would do where robots cannot reach an emergency area."""
+    short = [*team.shortfalls()]
+    stuck = any(pilot.limit <= 0.0 for pilot in team.pilots.values())
+    remedies = or_else([*for_diversions(team, jobs)]) if short and stuck else ""
+    yield from (f"{each}{remedies}" for each in short)
 
 
 def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:

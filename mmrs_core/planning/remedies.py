@@ -11,7 +11,8 @@ from mmrs_core.planning.materials import shortages
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.scene import Area, Robot, Scene
+from mmrs_core.scene import Area, AreaUse, Robot, Scene
+from mmrs_runtime.policies import RETURN, Policy
 
 _MOST_PAIRS = 1000
 """Jobs times robots up to which remedies for the whole mission are tried."""
@@ -53,6 +54,7 @@ def too_long(team: Team, jobs: Sequence[Job]) -> list[str]:
     tasks = [task for job in jobs for task in job.tasks() if team.too_long(task)]
     worst = {task: _best(team, task) for task in tasks}
     lifetimes, charging = _lifetimes(team, jobs, worst.values())
+    diverting = [*for_diversions(team, jobs)]
     reasons = []
     for task, (name, short, index) in worst.items():
         why = "; ".join(team.short_of_charge(task))
@@ -68,6 +70,7 @@ def too_long(team: Team, jobs: Sequence[Job]) -> list[str]:
             now = _lifetime(team.scene, team.scene.robot(name))
             remedies.insert(0, f"a lifetime of {lifetimes[name]} s (now {now:.0f} s){charging}")
         remedies[:1] = [f"for '{name}', {each}" for each in remedies[:1]]
+        remedies += diverting
         reasons.append(f"task '{task}' is too long for every robot ({why}){or_else(remedies)}")
     return reasons
 
@@ -91,8 +94,8 @@ def _lifetimes(
         lifetime = _lifetime(scene, scene.robot(name)) if name else inf
         if inf in (lifetime, short):
             return {}, ""
-        limit = team.pilots[name].limit
-        needed[name] = max(needed.get(name, 0), ceil(lifetime * (limit + short) / limit - 1e-6))
+        charge = team.pilots[name].charge
+        needed[name] = max(needed.get(name, 0), ceil(lifetime * (charge + short) / charge - 1e-6))
     if len(jobs) * len(scene.robots) > _MOST_PAIRS:
         return needed, ""
 
@@ -137,6 +140,44 @@ def _homes(team: Team, jobs: Sequence[Job], task: str, name: str, index: int) ->
         if _plannable(_with(scene, [name], lambda _: nearer(metres)), jobs):
             far = dist(home[:2], goal[:2])
             yield f"a home at ({home[0]:.0f}, {home[1]:.0f}), {far:.0f} m away,"
+
+
+def for_diversions(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
+    """Yield what would do where robots keep too much of a charge to reach an emergency area."""
+    scene = team.scene
+    kept = {name: each.diversions for name, each in team.pilots.items() if each.diversions is not None}
+    if not any(each.from_home > 0.0 for each in kept.values()):
+        return
+    if len(jobs) * len(scene.robots) > _MOST_PAIRS:
+        return
+
+    def plannable(away: float) -> bool:
+        landings = [_landing(team, name, away) for name in kept]
+        return _plannable(replace(scene, areas=(*scene.areas, *landings)), jobs)
+
+    if plannable(0.0):
+        pilots = [team.pilots[name] for name in kept]
+        farthest = max(each.charge * each.kinematics.cruise for each in pilots)
+        metres = floor(_last(plannable, 0.0, farthest))
+        yield f"an emergency area within {metres} m of each home"
+    events = dict.fromkeys(event for each in kept.values() for event in each.events)
+    returning = tuple(Policy(event, RETURN) for event in events)
+    if _plannable(replace(scene, policies=(*returning, *scene.policies)), jobs):
+        yield f"RETURN as the response to {' and '.join(events)}"
+
+
+def _landing(team: Team, name: str, away: float) -> Area:
+    """Return an emergency area with room for all, `away` metres from a robot's home."""
+    robot, diversions = team.scene.robot(name), team.pilots[name].diversions
+    places = diversions.places if diversions is not None else ()
+    goal = min(
+        places, key=lambda each: dist(each, robot.home[:2]), default=(robot.home[0] + 1.0, robot.home[1])
+    )
+    share = away / max(dist(goal, robot.home[:2]), 1e-9)
+    east, north = (a + share * (b - a) for a, b in zip(robot.home[:2], goal, strict=True))
+    half = 2.0 * max(robot.clearance, team.scene.minimum_separation or 0.0) * len(team.scene.robots)
+    shell = tuple((east + half * x, north + half * y) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    return Area(f"area for {name}", AreaUse.EMERGENCY, shell, types=frozenset({robot.type.name}))
 
 
 def for_times(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from math import inf
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.diversions import Diversions
 from mmrs_core.planning.states import ApproachRoute, Ready, State
 from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
 from mmrs_core.planning.travel import Route, Travel
@@ -27,23 +28,31 @@ class Pilot:
 
     Attributes:
         paces: by (bound, parts in one go): when each begins and ends, see `paced`.
-        limit: seconds that a charge allows.
+        charge: seconds that a charge allows.
+        limit: likewise, of a robot that always goes home less what a diversion from above home takes more
+            than landing there. Not positive: it cannot set out.
         fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
     """
 
-    def __init__(self, travel: Travel, *, homebound: bool = True) -> None:
+    def __init__(
+        self, travel: Travel, *, homebound: bool = True, diversions: Diversions | None = None
+    ) -> None:
         """Make it.
 
         Args:
             travel: routes of the robot.
             homebound: whether it always keeps enough to go home, even if it may stay where it ends.
+            diversions: to emergency areas, for which its charge must always suffice; None: it need not.
         """
         self.travel = travel
         self.robot, self.kinematics = travel.robot, travel.kinematics
         self.homebound = homebound or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
-        self.limit = min(self.kinematics.endurance, by_energy)
+        self.charge = min(self.kinematics.endurance, by_energy)
+        self.diversions = diversions if self.charge < inf else None
+        self._to_return = self.charge - (self.diversions.from_home if self.diversions is not None else 0.0)
+        self.limit = self._to_return if self.homebound or self._to_return <= 0.0 else self.charge
         self._noticing = noticing(self.kinematics.timing)
         launches = self.kinematics.launches
         self.fresh = 0.0 if launches else self._noticing
@@ -68,8 +77,11 @@ class Pilot:
         return _seconds(_remembered(self._exits, position, self.exit_route))
 
     def exit_longest(self, position: Position) -> float:
-        """Return how long that takes at most; inf where it cannot end."""
-        return _longest(_remembered(self._exits, position, self.exit_route)) + self.stopping
+        """Return how long that takes at most, or a diversion that it must be able to make; inf: it cannot."""
+        ending = _longest(_remembered(self._exits, position, self.exit_route)) + self.stopping
+        if self.homebound or self.diversions is None:
+            return ending
+        return max(ending, self.diversions.seconds(position))
 
     def end_seconds(self, position: Position) -> float:
         """Return the seconds from a place to the robot's end: down where it is, if it need not return."""
@@ -101,7 +113,7 @@ class Pilot:
 
     def affords_home(self, state: State, seconds: float, end: Position) -> bool:
         """Return whether `seconds` at most that end at a place leave enough to return home."""
-        return state.used + seconds + self.home_longest(end) <= self.limit + _SAME
+        return state.used + seconds + self.home_longest(end) <= self._to_return + _SAME
 
     def reach(
         self, state: State, approach: ApproachRoute, need: float, ready: Ready, task: str

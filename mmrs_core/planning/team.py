@@ -9,6 +9,7 @@ from functools import partial
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.corners import Corners
+from mmrs_core.planning.diversions import diversions_of
 from mmrs_core.planning.jobs import is_control
 from mmrs_core.planning.materials import (
     Layout,
@@ -27,14 +28,12 @@ from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
 from mmrs_core.planning.turns import JobResult
 from mmrs_core.scene import Robot, Scene, SharedWorks, Task, Work
+from mmrs_runtime.policies import RETURN
 
 _PORTIONS_PER_ROBOT = 60
 """Portions of a robot's part of the whole mission that are small enough to balance it."""
 
 _LOW = "BATTERY_LOW"
-
-_GOES_AWAY = ("RETURN", "EMERGENCY_AREA")
-"""Responses that take a robot elsewhere."""
 
 Direction = bool
 """Whether a material is laid out backwards."""
@@ -84,18 +83,20 @@ class Team:
         aloft = altitudes or {}
         fluid = scene.minimum_separation is None
         uploads = fluid and not scene.frame.is_local
-        self.pilots: Mapping[str, Pilot] = {
-            robot.name: Pilot(
-                Travel(
-                    robot,
-                    self.spaces.of(robot),
-                    aloft.get(robot.name, scene.transit_altitude),
-                    fluid=fluid,
-                    uploading=Corners(robot, scene.kept_from(robot)) if uploads else None,
-                ),
-                homebound=robot.name in self.homebound,
+        travels = {
+            robot.name: Travel(
+                robot,
+                self.spaces.of(robot),
+                aloft.get(robot.name, scene.transit_altitude),
+                fluid=fluid,
+                uploading=Corners(robot, scene.kept_from(robot)) if uploads else None,
             )
             for robot in scene.robots
+        }
+        diversions = diversions_of(scene, travels)
+        self.pilots: Mapping[str, Pilot] = {
+            name: Pilot(travel, homebound=name in self.homebound, diversions=diversions.get(name))
+            for name, travel in travels.items()
         }
         self.kinds = _kinds_of(scene, self.pilots)
         self.starts = dict[tuple[str, float], State]()
@@ -353,7 +354,7 @@ def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:
             works: object = shared.sorts[name]
         else:
             works = tuple(id(shared.get((task, name))) for task in tasks)
-        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works)
+        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works, pilot.limit > 0.0)
         kinds[name] = first.setdefault(key, name)
     return kinds
 
@@ -374,20 +375,19 @@ def _families(sorts: Sequence[tuple[Work, tuple[str, ...]]]) -> list[list[tuple[
 def homebound_of(scene: Scene) -> frozenset[str]:
     """Return the names of the robots that must always have enough left to go home.
 
-    These are the robots that return in the end, and those whose response to a low battery is to go
-    elsewhere, by default home.
+    These are the robots that return in the end, and those that return with a low battery, by default.
     """
     return frozenset(
         robot.name
         for robot in scene.robots
-        if robot.return_home or _response_to_low_battery(scene, robot) in _GOES_AWAY
+        if robot.return_home or _response_to_low_battery(scene, robot) == RETURN
     )
 
 
 def _response_to_low_battery(scene: Scene, robot: Robot) -> str:
     """Return what the mission or the robot's type declares; RETURN where neither does."""
     declared = (policy.response for policy in (*scene.policies, *robot.type.policies) if policy.event == _LOW)
-    return next(declared, "RETURN")
+    return next(declared, RETURN)
 
 
 def _seconds_of_all(scene: Scene) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist, inf
@@ -12,7 +12,7 @@ from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.corners import Corners
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.strokes import length_of
-from mmrs_core.scene import Area, AreaUse, Kinematics, Position, Robot, Scene
+from mmrs_core.scene import Area, AreaUse, Kinematics, Point, Position, Robot, Scene
 from mmrs_core.scene.timing import MoveSeconds, Rates, bounded
 
 _SPECK = 0.01
@@ -232,6 +232,35 @@ class Travel:
             raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
         down = self._upright(self.kinematics.landing(start[2] - ground))
         return self._route((start,), down, start[2] - ground, ground)
+
+    def land_at(self, start: Position, place: Point) -> Route:
+        """Return the route from a position to another place than home, and there down to the ground.
+
+        Robots that do not launch end at the height of their home.
+
+        Raises:
+            UnreachableError: there is none.
+        """
+        goal, surface = (*place, start[2]), (*place, self.robot.home[2])
+        points = self.space.route(start, goal) if goal != start else (start,)
+        if not self.kinematics.launches:
+            return self._timed(points if goal == surface else (*points, *self.space.route(goal, surface)[1:]))
+        down = self.come_down(goal)
+        seconds = MoveSeconds(*(a + b for a, b in zip(self._gone(points), down.bounds, strict=True)))
+        return self._route(points, seconds, length_of(points) + down.length, down.height)
+
+    def above_home(self, heights: Iterable[float]) -> list[Position]:
+        """Return from where the robot comes down at home, by the heights at which it comes there."""
+        if not self.kinematics.launches:
+            return [self.robot.home]
+        levels = dict.fromkeys(self._within(height) for height in heights)
+        return [above for above, reason in map(self._above_home, levels) if not reason]
+
+    def landing_longest(self, start: Position) -> float:
+        """Return the seconds from above home to the ground at most; 0 for robots that do not launch."""
+        if not self.kinematics.launches:
+            return 0.0
+        return self._upright(self.kinematics.landing(start[2] - self.robot.home[2])).longest
 
     def _timed(self, points: tuple[Position, ...]) -> Route:
         return self._route(points, self._gone(points), length_of(points))
