@@ -141,8 +141,10 @@ class Space:
         level = dist(start[:2], goal[:2]) / self.rates.cruise
         best: list[Position] | None = None
         quickest = inf
-        for upright, height in self._heights(start, goal):
-            if upright + level >= quickest or not self._columns_clear(start, goal, height):
+        heights = [each for each in self._heights(start, goal) if each[0] < inf]
+        clear = self._columns_clear(start, goal, [height for _, height in heights])
+        for (upright, height), free in zip(heights, clear, strict=True):
+            if upright + level >= quickest or not free:
                 continue
             longest = (quickest - upright) * self.rates.cruise
             blocks = self._obstacles.blocks_at(height)
@@ -170,9 +172,16 @@ class Space:
     def _upright(self, start: Position, goal: Position, height: float) -> float:
         return self.rates.upright(height - start[2]) + self.rates.upright(goal[2] - height)
 
-    def _columns_clear(self, start: Position, goal: Position, height: float) -> bool:
-        columns = np.array([[start, (*start[:2], height)], [(*goal[:2], height), goal]])
-        return not self._obstacles.blocking(columns).any()
+    def _columns_clear(self, start: Position, goal: Position, heights: Sequence[float]) -> list[bool]:
+        """Return, by height, whether nothing is in the way up or down to it at start and goal."""
+        columns = [
+            column
+            for height in heights
+            for column in ([start, (*start[:2], height)], [(*goal[:2], height), goal])
+        ]
+        found = self._obstacles.blocking(np.array(columns).reshape(-1, 2, 3))
+        blocked = np.logical_or.reduce(found, axis=1).tolist()
+        return [not (up or down) for up, down in zip(blocked[::2], blocked[1::2], strict=True)]
 
     def _at_several_heights(
         self, start: Position, goal: Position, active: Flags

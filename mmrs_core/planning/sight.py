@@ -126,7 +126,12 @@ def search(
     straight = sqrt((goal_x - start_x) ** 2 + (goal_y - start_y) ** 2)
     if straight > longest:
         return NONE
-    if _clear(c, memory, start_x, start_y, goal_x, goal_y, spare):
+    areas = 0
+    for area in range(len(memory.blocks)):
+        if memory.blocks[area]:
+            memory.areas[areas] = area
+            areas += 1
+    if _clear(c, memory, areas, start_x, start_y, goal_x, goal_y, spare):
         best[goal], came[goal] = straight, START
         return straight
     to_goal = {-2: 0.0}
@@ -236,10 +241,7 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
         k = memory.look_node[i] // 2
         if _hidden(blocked, bins, base_x, base_y, width, c.x[k] - x, c.y[k] - y, _MARGIN):
             continue
-        j = 0
-        while j < areas and not _crosses(c, memory.areas[j], x, y, c.x[k], c.y[k], spare):
-            j += 1
-        if j == areas:
+        if _clear(c, memory, areas, x, y, c.x[k], c.y[k], spare):
             memory.look_node[found], memory.look_metres[found] = memory.look_node[i], memory.look_metres[i]
             found += 1
     return found
@@ -349,32 +351,32 @@ def _meet(
     return seen
 
 
-def _clear(c: Columns, memory: Memory, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
-    """Return whether no area that blocks lies across a line."""
-    for area in range(len(memory.blocks)):
-        if memory.blocks[area] and _crosses(c, area, x, y, to_x, to_y, spare):
+def _clear(
+    c: Columns, memory: Memory, areas: int, x: float, y: float, to_x: float, to_y: float, spare: float
+) -> bool:
+    """Return whether none of the memory's first areas lies across a line."""
+    west, east, south, north = min(x, to_x), max(x, to_x), min(y, to_y), max(y, to_y)
+    along_x, along_y = to_x - x, to_y - y
+    for i in range(areas):
+        area = memory.areas[i]
+        if east < c.west[area] or west > c.east[area] or north < c.south[area] or south > c.north[area]:
+            continue
+        aside = (c.south[area] + c.north[area] - 2.0 * y) * along_x - (
+            c.west[area] + c.east[area] - 2.0 * x
+        ) * along_y
+        reach = abs(along_y) * (c.east[area] - c.west[area]) + abs(along_x) * (c.north[area] - c.south[area])
+        if abs(aside) <= reach + 2.0 * _TINY and _crosses(c, area, x, y, to_x, to_y, spare):
             return False
     return True
 
 
 def _crosses(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float, spare: float) -> bool:
-    """Return whether a line meets an area's smaller shape.
+    """Return whether a line meets the smaller shape of an area whose box it may meet.
 
     Where it ends within that shape, only if the exact distance to the area as drawn is too small: growing
     gives a little away.
     """
-    if (
-        max(x, to_x) < c.west[area]
-        or min(x, to_x) > c.east[area]
-        or max(y, to_y) < c.south[area]
-        or min(y, to_y) > c.north[area]
-    ):
-        return False
     along_x, along_y = to_x - x, to_y - y
-    east, north = (c.west[area] + c.east[area]) / 2.0 - x, (c.south[area] + c.north[area]) / 2.0 - y
-    reach = abs(along_y) * (c.east[area] - c.west[area]) + abs(along_x) * (c.north[area] - c.south[area])
-    if abs(along_x * north - along_y * east) > reach / 2.0 + _TINY:
-        return False
     meets = begins = ends = False
     first, last = c.edges_from[area], c.edges_from[area + 1]
     squared = along_x * along_x + along_y * along_y
