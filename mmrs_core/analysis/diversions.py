@@ -205,6 +205,13 @@ class _Surroundings:
             tuple(area.safety_distance + own for area in emergency),
         )
 
+    def _boxes(self) -> Iterator[tuple[Floats, Floats]]:
+        """Yield, for each area, the corners of a box outside of which every leg keeps its distance."""
+        for area, required in zip(self.kept_from, self.required, strict=True):
+            shell = np.asarray(area.shell, dtype=np.float64)
+            least, most = np.append(shell.min(axis=0), area.low), np.append(shell.max(axis=0), area.high)
+            yield least - required, most + required
+
     def landing(self, place: Point) -> str:
         """Return the emergency area in which a place is far enough from all sides; empty if in none."""
         for area, inwards in zip(self.emergency, self.inwards, strict=True):
@@ -217,8 +224,9 @@ class _Surroundings:
     def clear(self, begins: Floats, ends: Floats) -> np.typing.NDArray[np.bool_]:
         """Return for each of n legs whether it keeps its distance from everything."""
         clear = np.ones(len(begins), np.bool_)
-        for number in range(len(self.kept_from)):
-            some = np.flatnonzero(clear)
+        low, high = np.minimum(begins, ends), np.maximum(begins, ends)
+        for number, (least, most) in enumerate(self._boxes()):
+            some = np.flatnonzero(clear & (low < most).all(axis=1) & (high > least).all(axis=1))
             clear[some] = self._kept(begins[some], ends[some], number)
         return clear
 

@@ -151,7 +151,7 @@ class _Line:
 
 
 def _runs(stroke: Stroke, halts: Sequence[bool]) -> Iterator[tuple[range, int]]:
-    """Yield the legs that may be part of a mission that is uploaded, and how many of its ends go on.
+    """Yield the legs that may be part of a mission that is uploaded, and how many of its ends continue.
 
     Args:
         stroke: of the legs.

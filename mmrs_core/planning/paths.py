@@ -173,7 +173,7 @@ class Space:
         return self.rates.upright(height - start[2]) + self.rates.upright(goal[2] - height)
 
     def _columns_clear(self, start: Position, goal: Position, heights: Sequence[float]) -> list[bool]:
-        """Return, by height, whether nothing is in the way up or down to it at start and goal."""
+        """Return, by height, whether it can be reached straight up or down from start and goal."""
         columns = [
             column
             for height in heights

@@ -248,7 +248,7 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
 
 
 def _open(blocked: Sequence[float], bins: int, metres: float) -> bool:
-    """Return whether some bin is not blocked up to so many metres."""
+    """Return whether some bin is not blocked up to `metres`."""
     i = 0
     while i < bins and blocked[i] <= metres:
         i += 1

@@ -47,7 +47,7 @@ class State(NamedTuple):
         return self.later(route.bounds, route.length, at)._replace(away=True, trail=trail)
 
     def later(self, seconds: MoveSeconds, length: float, at: Position) -> State:
-        """Return the state so many seconds and `length` metres later, without steps."""
+        """Return the state `seconds` and `length` metres later, without steps."""
         return self._replace(
             time=self.time + seconds.expected,
             at=at,

@@ -94,7 +94,7 @@ def uncertain_seconds(stroke: Stroke, kinematics: Kinematics) -> float:
 def longest_end(stroke: Stroke, kinematics: Kinematics) -> float:
     """Return how long what a robot does at the last point of a stroke takes at most.
 
-    That is to turn, to hold, and to search there and back; what it does on its way there is not counted.
+    That is to turn, to hold, and to search there and back; what it does before it is there is not counted.
     """
     stays = len(stroke.points) == 1 and stroke.object is None
     seconds = stroke.hold + (noticing(kinematics.timing) if stroke.hold > 0.0 or stays else 0.0)

@@ -110,7 +110,7 @@ ROVER = AutopilotTiming(
 need not hold. On missions it never reverses to turn, and corners count as passed within WP_RADIUS, which is
 set. Half of the settling is before it sets out, as the first and last legs of runs show.
 
-That its motors run, or have stopped, is known by the next heartbeat: after 0.9 s, and 0.2 to 0.9 s."""
+Whether it is armed is known by the next heartbeat: after 0.9 s, and 0.2 to 0.9 s."""
 
 SUB = AutopilotTiming(
     step=LegTiming(
