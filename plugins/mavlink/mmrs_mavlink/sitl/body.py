@@ -40,7 +40,8 @@ class CurvedLeg:
 
     Attributes:
         path: from its start to its end, metres. length: of it.
-        elapsed: seconds since its start. duration: seconds until its end. ramp: seconds to its full speed.
+        elapsed: seconds since its start; less than 0: it begins later.
+        duration: seconds until its end. ramp: seconds to its full speed.
     """
 
     path: Vector
@@ -75,7 +76,8 @@ class CurvedLeg:
 
     def at(self, seconds: float) -> tuple[float, float]:
         """Return the distance and the speed after that time."""
-        ramp, left = self.ramp, self.duration - seconds
+        ramp, seconds = self.ramp, max(0.0, seconds)
+        left = self.duration - seconds
         if left <= 0.0:
             return self.length, 0.0
         if left < ramp:
@@ -195,6 +197,7 @@ class Body:
             if self.pace > STANDING:
                 return False
             self._legs, self._start, self._goal = [self._leg(self.position, target)], self.position, target
+            self._legs[0].elapsed = -self.figures.starting
         self._begin_turn(target)
         for leg in self._legs:
             leg.elapsed += step

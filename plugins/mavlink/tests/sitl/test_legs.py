@@ -75,6 +75,23 @@ def test_a_vehicle_overshoots_single_targets_as_arducopter(length, speed, beyond
     assert max(place[1] for place in track) - length == pytest.approx(beyond, abs=0.12)
 
 
+def test_a_rover_on_a_mission_sets_out_as_late_as_real_ones():
+    """Half of what an ArduRover settles on missions is before its first leg."""
+    figures, place = ARDUROVER.pacing.mission, (0.0, 20.0, 0.0)
+    body = Body(figures, speed=1.5, curved=True)
+    body.target = place
+    body.advance(figures.starting)
+    assert body.position == (0.0, 0.0, 0.0)
+    body.advance(1.0)
+    assert body.position[1] > 0.1
+    planned = Rates(1.5, 1.0, 1.0, figures).from_stop_to_stop((0.0, 0.0, 0.0), place)
+    seconds = figures.starting + 1.0
+    while not body.rested:
+        body.advance(STEP)
+        seconds += STEP
+    assert seconds == pytest.approx(planned - figures.settling + figures.starting, abs=0.2)
+
+
 @pytest.mark.parametrize("length", [15.0, 30.0, 100.0])
 def test_a_px4_that_is_commanded_leg_by_leg_settles_as_long_as_is_planned(length):
     figures = PX4_MULTICOPTER.pacing.step
