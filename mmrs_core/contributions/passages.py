@@ -77,16 +77,24 @@ class Passages:
         return replace(known, sets_out=True) if index in self._first else known
 
     def _setting_out(self) -> Iterator[int]:
-        """Yield the moves before which motors may be off: the first ones, and those after charging."""
+        """Yield the moves before which the robot may have to set out.
+
+        These are the first ones and those after charging, before which motors may be off; of a robot that
+        launches, those after that which are commanded one by one.
+        """
+        moves, launches = self._robot.moves, self._kinematics.launches
+        names = [most_specific(move.metaclasses, self._move_kinds) for move in moves]
+        kinds = [None if name is None else self._move_kinds[name] for name in names]
+        rests = [i == self._robot.start or move.is_a(RECHARGE) for i, move in enumerate(moves)]
+        rises = [kind is not None and kind.leaves == "airborne" for kind in kinds]
+        pending = [index for index, counts in enumerate(rises if launches else rests) if counts]
         after, seen = successors(self._robot), set[int]()
-        off = [self._robot.start, *(i for i, move in enumerate(self._robot.moves) if move.is_a(RECHARGE))]
-        while off:
-            for index in set(after[off.pop()]) - seen:
+        while pending:
+            for index in set(after[pending.pop()]) - seen:
                 seen.add(index)
-                name = most_specific(self._robot.moves[index].metaclasses, self._move_kinds)
-                if name is not None and "grounded" in self._move_kinds[name].needs:
-                    off.append(index)
-                else:
+                if (kind := kinds[index]) is not None and "grounded" in kind.needs:
+                    pending.append(index)
+                elif not launches or index not in self._uploaded:
                     yield index
 
     def facing(self, move: Move, path: tuple[Position, ...], before: float | None) -> float | None:

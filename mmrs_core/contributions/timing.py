@@ -49,7 +49,7 @@ def _uploaded(of: Callable[[Robot, Scene], Kinematics], robot: Robot, scene: Sce
     whole = of(robot, scene).in_mission()
     ends = (whole.launch, whole.recovery) if whole.launches else (0.0, 0.0)
     launch, recovery = (max(0.0, each - whole.noticing) for each in ends)
-    return replace(whole, mission=None, launch=launch, recovery=recovery)
+    return replace(whole, mission=None, launch=launch, recovery=recovery, guiding=0.0)
 
 
 def _kinematics(
@@ -71,6 +71,7 @@ def _kinematics(
         launch=_first(capability.launch, autopilot.launch, plain.launch),
         recovery=_first(capability.recovery, autopilot.recovery, plain.recovery),
         noticing=autopilot.noticing,
+        guiding=autopilot.guiding,
         landing_rate=landing_rate,
         landing_height=landing_height if landing_rate < inf else 0.0,
         rounds=autopilot.rounds,

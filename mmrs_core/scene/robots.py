@@ -151,6 +151,7 @@ class Kinematics:
         launch: seconds that launching takes beside the climb, and setting out where the robot does not
             launch; recovery: likewise for landing.
         noticing: seconds of each of these, and of a run's last leg, until a program notices its end.
+        guiding: seconds by which the first leg after launching begins later that is commanded alone.
         landing_rate: metres per second of the descent below `landing_height`, metres above the ground.
         endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
         energy: usable joules of one sortie, reserve taken off; inf for wired robots.
@@ -173,7 +174,7 @@ class Kinematics:
         facing: degrees clockwise from north in which it looks before a move; None: not known.
         push: with which it begins a move; None: not known.
         entering: metres per second of the move before, at most, where it passes the end of that.
-        sets_out: whether its motors may be off before a move.
+        sets_out: whether its motors may be off before a move, or it has just launched.
     """
 
     cruise: float
@@ -188,6 +189,7 @@ class Kinematics:
     launch: float = 0.0
     recovery: float = 0.0
     noticing: float = 0.0
+    guiding: float = 0.0
     landing_rate: float = inf
     landing_height: float = 0.0
     endurance: float = inf
@@ -260,12 +262,14 @@ class Kinematics:
         return MoveSeconds(0.0, angle / self.turn_rate, half.longest + noticing(self.timing))
 
     def setting_out(self) -> MoveSeconds:
-        """Return how long it takes until the motors of a robot run that does not launch.
+        """Return how long it takes until a robot sets out: one that does not launch, once its motors run.
 
-        Vehicles tell that from time to time, and two messages may be lost.
+        Vehicles tell that from time to time, and two messages may be lost. After launching, the bounds of a
+        leg allow for that.
         """
-        expected = 0.0 if self.launches else self.launch
-        return MoveSeconds(0.0, expected, 3.0 * expected)
+        if self.launches:
+            return MoveSeconds(0.0, self.guiding, 0.0)
+        return MoveSeconds(0.0, self.launch, 3.0 * self.launch)
 
     def charging_time(self, seconds: float) -> MoveSeconds:
         """Return how long charging takes that is to take so long: until the batteries are full.

@@ -110,6 +110,7 @@ class AutopilotTiming:
         recovery: seconds from touching the ground until it stands still; None: as its kind says.
         noticing: seconds of launching, of landing, and of the last leg of a run that is flown as a mission,
             until a program notices its end: none where all is one mission that was uploaded.
+        guiding: seconds by which the first leg after launching begins later that is commanded alone.
         landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
         rounds: whether a vehicle that cannot turn on the spot drives round instead of shunting.
         turn_rate: largest, degrees per second.
@@ -122,6 +123,7 @@ class AutopilotTiming:
     launch: float | None = None
     recovery: float | None = None
     noticing: float = 0.0
+    guiding: float = 0.0
     landing_rate: float = inf
     landing_height: float = 0.0
     rounds: bool = False

@@ -71,6 +71,20 @@ def test_the_first_leg_on_each_charge_counts_that_motors_start():
     assert later == [pytest.approx((0.0, each, 3.0 * each)) for each in (0, 0, 2.0, 0, 0, 2.0, 0)]
 
 
+def test_the_first_leg_that_is_commanded_after_launching_counts_that_it_begins_late():
+    given = sample_of("multicopter").plain
+    (kind,) = (each for each in given.robot_kinds.values() if each.name == "multicopter")
+
+    def seconds(guiding):
+        known = replace(kind, kinematics=lambda *each: replace(kind.kinematics(*each), guiding=guiding))
+        found = planned_moves(given.program.robots[0], replace(given, robot_kinds={kind.metaclass: known}))
+        return {each.manoeuvre: each.seconds for each in found}
+
+    plain, late = seconds(0.0), seconds(2.0)
+    assert late["go_to"].expected == pytest.approx(plain["go_to"].expected + 2.0)
+    assert (late["take_off"], late["land"]) == (plain["take_off"], plain["land"])
+
+
 def test_what_is_not_known_is_none():
     one = robot("r", [go("out", (30.0, 0.0, 0.0))])
     (_, out, _) = planned_moves(one, target_input(program(one), []))

@@ -172,7 +172,7 @@ _PX4_STEP = LegTiming(
     descent=1.5,
     corner_radius=0.0,
     acceptance=1.5,
-    settling=2.7,
+    settling=2.2,
     overshoot=0.31,
     returning=0.5,
     spread=0.45,
@@ -197,6 +197,7 @@ PX4_COPTER = AutopilotTiming(
     launch=6.3,
     recovery=7.0,
     noticing=2.5,
+    guiding=2.0,
     landing_rate=0.7,
     landing_height=10.0,
     turn_rate=45.0,
@@ -208,7 +209,7 @@ Leg by leg it goes 0.8 to 1.8 m beyond a target at 5.2 to 5.9 m/s, 2.6 m at 9.8 
 than 0.5 m/s. It counts as settled once it has been within 1.5 m for 6 s (``vehicles/px4.py``): after 1 to
 5 s at 2 m/s, 3 to 9 s at 5 m/s, and 4 to 8 s at 8 m/s. An earlier driver waited for its acceptance and
 0.3 m/s in any case, for up to 17.5 s: the speed that it estimates wanders by 0.9 m/s. A first leg begins 2 s
-late, since OFFBOARD wants set-points before.
+late, since OFFBOARD wants set-points before (guiding).
 
 On missions an item is over within NAV_ACC_RAD. It brakes early for its jerk
 (``computeMaxSpeedFromDistance``, ``TrajMath.hpp``), which counts as settling. The last leg of a mission was
