@@ -34,7 +34,7 @@ def judged(flight: Flight, figures: Sequence[Figure], current: Current) -> tuple
         why = _against(flight, [each for each in found if each.flown_as == flown_as], flown_as, current)
         found = [
             replace(each, doubt=each.doubt or why)
-            if why and each.flown_as == flown_as and each.name in TIMING
+            if why and each.values and each.flown_as == flown_as and each.name in TIMING
             else each
             for each in found
         ]
