@@ -72,7 +72,8 @@ def test_speed_is_kept_between_straight_legs(bench):
     flown(bench, *bench.go_to(*straight), bench.item(LOITER, straight[-1]), until=6)
     track = [point for point in bench.pilot.track if 20.0 < point[2] < 80.0]
     seconds, metres = track[-1][0] - track[0][0], track[-1][2] - track[0][2]
-    assert metres / seconds == pytest.approx(4.6, abs=0.1)
+    # A leg of 20 m reaches a speed v of v (2 √(v / 1 m/s³) + 0.3 s) = 20 m, as the jerk comes and goes.
+    assert metres / seconds == pytest.approx(4.51, abs=0.1)
 
 
 def test_a_hold_lasts_its_seconds(bench):
