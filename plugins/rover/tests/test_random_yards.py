@@ -98,9 +98,12 @@ def judge(scene, contributions):
     run = pipeline.simulate(program, pipeline.place_of_scene(scene), contributions)
     assert replay(program, run.records).complaints == ()
     assert run.ending.outcome.value == "success"
-    # The plan knows no headings: it expects of a rover that drives round that it is on its leg already.
-    turning = (len(each.moves) * scene.robot(each.id).kinematics.shunting for each in program.robots)
-    assert run.ending.time <= plan.makespan + sum(turning) + 1e-3
+    # The plan ends where the last rover is back, its motors still on. It knows no headings: it expects of a
+    # rover that drives round that it is on its leg already.
+    kinematics = [scene.robot(each.id).kinematics for each in program.robots]
+    stopping = max(each.recovery for each in kinematics)
+    turning = sum(len(one.moves) * of.shunting for one, of in zip(program.robots, kinematics, strict=True))
+    assert run.ending.time <= plan.makespan + stopping + turning + 1e-3
     for name, track in run.tracks.items():
         assert_clear(scene, scene.robot(name), track)
 

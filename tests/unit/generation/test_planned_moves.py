@@ -9,7 +9,7 @@ import pytest
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, MoveTarget, Transition
 from mmrs_core.generation.capabilities.probes import changed
 from mmrs_core.generation.planned_moves import kinematics_of, planned_moves
-from mmrs_core.scene.timing import MoveSeconds
+from mmrs_core.scene.timing import NOTICING, MoveSeconds
 from mmrs_core.testing.programs import sample_of, target_input
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type, use
 
@@ -27,7 +27,7 @@ def test_a_move_leads_from_where_the_one_before_it_ends():
     assert out.path == ((0.0, 0.0, 0.0), (30.0, 0.0, 0.0))
     assert back.path == ((30.0, 0.0, 0.0), (0.0, 40.0, 0.0))
     assert (out.manoeuvre, stay.manoeuvre) == ("go_to", "")
-    assert stay.seconds == MoveSeconds.exactly(4.0)
+    assert stay.seconds == MoveSeconds(4.0, 4.0, 4.0 + NOTICING)
 
 
 def test_time_follows_from_the_speed_of_the_robot_and_from_its_actions():
@@ -36,7 +36,7 @@ def test_time_follows_from_the_speed_of_the_robot_and_from_its_actions():
     (first,) = (each for each in planned_moves(given.program.robots[0], given) if each.manoeuvre == "go_to")
     slow = changed(given, lambda each: replace(each, moves=tuple(replace(m, speed=0.5) for m in each.moves)))
     (second,) = (each for each in planned_moves(slow.program.robots[0], slow) if each.manoeuvre == "go_to")
-    assert 60.0 <= second.seconds[0] <= second.seconds[1] < 61.0
+    assert second.seconds.shortest < 60.0 < second.seconds.expected < 65.0 < second.seconds.longest
 
     def acts(each):
         return replace(each, moves=tuple(replace(m, after=(use("device", "act"),)) for m in each.moves))

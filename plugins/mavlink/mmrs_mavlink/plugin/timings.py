@@ -16,14 +16,14 @@ from mmrs_runtime.timing import AutopilotTiming
 
 def timings() -> Iterator[VehicleTiming]:
     """Yield the timing of each class of vehicle."""
-    for vehicle in dict.fromkeys(each.vehicle for each in PROFILES.values()):
+    for vehicle in dict.fromkeys(word for each in PROFILES.values() for word in each.words):
         yield VehicleTiming(vehicle, partial(_timing_of, vehicle))
 
 
 def _timing_of(vehicle: str, type: RobotType) -> AutopilotTiming:
     """Return the timing with the autopilot that the type names, else with ArduPilot."""
     named = autopilot_of(type, {})
-    fitting = [each for each in PROFILES.values() if each.vehicle == vehicle]
+    fitting = [each for each in PROFILES.values() if vehicle in each.words]
     profile = next((each for each in fitting if each.autopilot.name == named), fitting[0])
     step = replace(profile.pacing.step, still=profile.still)
     return replace(profile.pacing, step=step, charging=CHARGING_FACTOR)

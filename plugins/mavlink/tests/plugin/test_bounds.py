@@ -20,7 +20,7 @@ from mmrs_core.scene import Capability, Kinematics
 from mmrs_core.scene.timing import Rates
 from mmrs_core.testing.programs import installed, move, program
 from mmrs_mavlink.plugin.timings import timings
-from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PX4_MULTICOPTER
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PROFILES, PX4_MULTICOPTER
 from mmrs_mavlink.sitl.body import STEP, Body, Vector
 from mmrs_mavlink.steps.energy import CHARGING_FACTOR
 
@@ -247,3 +247,10 @@ def test_charging_may_end_at_once_or_take_as_long_as_the_driver_does_not_complai
 def test_every_autopilot_that_turns_says_how_fast_and_reports_at_last(profile):
     assert profile.pacing.turn_rate <= 60.0
     assert profile.pacing.step.reporting >= 2.0
+
+
+def test_each_class_of_vehicle_that_a_profile_carries_takes_its_time():
+    """Nearly all legs that a tracked robot drove were outside bounds without any width."""
+    found = {each.vehicle: each.of(quad()) for each in timings()}
+    assert found.keys() == {word for profile in PROFILES.values() for word in profile.words}
+    assert found["ground"] == found["rover"]
