@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
-from checking import given, rover
+from checking import given, rover, square
 from diagnostics_page import Example
 from mmrs_flyaq.importing import importer_of
 
@@ -32,7 +32,7 @@ from mmrs_core.languages.modelset import read_project
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.scene import Part
+from mmrs_core.scene import AreaUse, Part
 from mmrs_core.testing.conformance import ConstraintConformance
 from mmrs_core.testing.models import breaches
 from mmrs_core.testing.small_programs import go, hold, use
@@ -372,10 +372,20 @@ def _line(verdict: Verdict) -> str:
     return f"{verdict.property}: {verdict.status.value}{margin}\n    {verdict.message}"
 
 
-def _asked(made: RobotProgram, environment: Mapping[str, float] | None = None, **tasks: Part) -> CheckInput:
+def _asked(
+    made: RobotProgram,
+    environment: Mapping[str, float] | None = None,
+    meadow: float | None = None,
+    **tasks: Part,
+) -> CheckInput:
+    """Return what to check; with a meadow so many metres east of home, a policy leads the robot to it."""
     bounds = Part((), {"min": -10.0, "max": 40.0})
     type = rover(max_payload=1.0, attributes={"operatingTemperature": bounds})
-    return given(made, type=type, environment=environment or {}, tasks=tasks)
+    asked = given(made, type=type, environment=environment or {}, tasks=tasks)
+    if meadow is None:
+        return asked
+    area = square("meadow", (meadow, 0.0), 20.0, use=AreaUse.EMERGENCY)
+    return replace(asked, areas=(area,), rally_points={made.id: ((meadow, 0.0),)})
 
 
 def _image(needed: float) -> Action:
