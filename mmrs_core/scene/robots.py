@@ -262,7 +262,7 @@ class Kinematics:
         return MoveSeconds(0.0, angle / self.turn_rate, half.longest + noticing(self.timing))
 
     def setting_out(self) -> MoveSeconds:
-        """Return how long it takes until a robot sets out: one that does not launch, once its motors are on.
+        """Return how long it takes until a robot sets out: one that does not launch, once it is armed.
 
         Vehicles tell that from time to time, and two messages may be lost. After launching, the bounds of a
         leg allow for that.
