@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import (
     BehaviourContext,
     expand,
@@ -92,18 +93,22 @@ class Stages:
     def timed(self) -> Plan:
         """Return the plan with the times that its behaviour is simulated to take.
 
-        Where choices depend on what is not known yet, or the simulation fails, the planner's times remain.
+        Where choices depend on what is not known yet, or the simulation fails, the planner's times remain,
+        and a note gives the reason.
         """
         from mmrs_core.simulation.plan_times import as_simulated
         from mmrs_runtime.semantics import Outcome
 
         try:
             run = simulate(self.program, self.place, self._contributions)
-        except UnsupportedError:
-            return self.plan
+        except MmrsError as error:
+            return self._untimed(str(error))
         if run.ending.outcome is not Outcome.SUCCESS:
-            return self.plan
+            return self._untimed(f"the simulated run ends with '{run.ending.outcome.value}'")
         return as_simulated(self.plan, run, self.transformed[1], self.program.robots)
+
+    def _untimed(self, reason: str) -> Plan:
+        return replace(self.plan, notes=(f"times are the planner's: {reason}", *self.plan.notes))
 
     @property
     def place(self) -> BehaviourContext:

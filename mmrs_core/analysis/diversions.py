@@ -135,7 +135,7 @@ class _Diversions:
         return ground_height(above, self._home) if self._kinematics.launches else self._home[2]
 
     def _seconds(self, path: MovePath, corners: Sequence[Position]) -> float:
-        """Return the seconds from a path's end over corners to the ground below the last one."""
+        """Return the seconds at most from a path's end over corners to the ground below the last one."""
         legs = sum(self._rates.from_stop_to_stop(*leg) for leg in pairwise((path.points[-1], *corners)))
         over = corners[-1]
         drop = over[2] - self._ground(over)
@@ -143,6 +143,7 @@ class _Diversions:
             down = self._kinematics.landing(drop) * (1.0 + self._kinematics.timing.spread)
         else:
             down = self._rates.from_stop_to_stop(over, (over[0], over[1], over[2] - drop)) if drop else 0.0
+            down += self._kinematics.setting_out().longest + self._kinematics.timing.reporting
         return legs + path.radius / self._kinematics.cruise + down
 
     def _detour(self, path: MovePath) -> tuple[float, str]:
@@ -152,10 +153,9 @@ class _Diversions:
             above = (here[0], here[1], height)
             for place, area in self._places.items():
                 corners = self._around.detour(above, (*place, height))
-                if corners and self._around.all_clear([here, *corners, (*place, self._ground(corners[-1]))]):
-                    found.append(
-                        (self._seconds(path, corners if above == here else [above, *corners[1:]]), area)
-                    )
+                way = corners if above == here else [above, *corners]
+                if corners and self._around.all_clear([here, *way, (*place, self._ground(corners[-1]))]):
+                    found.append((self._seconds(path, way), area))
         return min(found)
 
     def _go_on(self, durations: Mapping[int, Duration]) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.conversion import SchemaLocation, places_in
-from mmrs_core.cli.output import say, say_json, tell
+from mmrs_core.cli.output import progress, say, say_json, tell
 from mmrs_core.cli.parameters import (
     Context,
     Explain,
@@ -101,14 +101,16 @@ def plan(
         if file.exists():
             tell(f"unchanged: {file} is of an earlier plan")
         raise
+    with progress("simulating the plan"):
+        timed = stages.timed
     save(stages.transformed[0], file, session.contributions, places)
     if json:
-        summary = plan_summary(stages.scene, stages.timed)
+        summary = plan_summary(stages.scene, timed)
         if explain:
             summary = {**summary, "explanation": explanation_summary(stages.explanation)}
         say_json({"behaviour": file, **summary, "verdicts": stages.verdicts})
     else:
-        for line in plan_lines(stages.scene, stages.timed):
+        for line in plan_lines(stages.scene, timed):
             say(line)
         for line in explanation_lines(stages.explanation) if explain else ():
             say(line)

@@ -38,11 +38,21 @@ class Effort:
         self._clock, self._show = clock, show
         self._end = inf if seconds is None else clock() + seconds
         self.stopped = False
+        self._trial: Effort | None = None
 
     def stop(self) -> bool:
         """End the search; return whether it has something that can be kept."""
         self.stopped = self.best < inf
-        return self.stopped
+        return self.stopped or (self._trial is not None and self._trial.stop())
+
+    def trial(self) -> Effort:
+        """Return the effort of a search before this one, whose result may be rejected.
+
+        It has three quarters of the time left. While nothing else has been found, stopping this one stops it.
+        """
+        seconds = 0.75 * (self._end - self._clock()) if self.timed else None
+        self._trial = Effort(seconds, self._clock, self._show)
+        return self._trial
 
     @property
     def over(self) -> bool:

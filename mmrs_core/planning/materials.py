@@ -252,7 +252,7 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
     elif short[worst] > 1e-9:
         yield (
             f"{_words(material, worst)} takes up to {ceil(pilot.limit + short[worst])} s there and back; one"
-            f" charge allows {floor(pilot.limit)} s{_kept(pilot)}: {ceil(short[worst])} s short"
+            f" charge allows {floor(pilot.limit)} s{kept_of_charge(pilot)}: {ceil(short[worst])} s short"
         )
 
 
@@ -267,7 +267,7 @@ def _no_diversion(pilot: Pilot, diversions: Diversions) -> str:
     )
 
 
-def _kept(pilot: Pilot) -> str:
+def kept_of_charge(pilot: Pilot) -> str:
     """Return what is kept of a charge for a diversion; empty where nothing is."""
     kept = pilot.charge - pilot.limit
     return f" beside {ceil(kept)} s kept to reach an emergency area from home" if kept > 0.5 else ""

@@ -16,6 +16,7 @@ from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.charges import most_used
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
+from mmrs_core.planning.materials import kept_of_charge
 from mmrs_core.planning.remedies import (
     counted,
     for_all_charges,
@@ -99,8 +100,9 @@ def _leaving_enough(team: Team, seed: int, effort: Effort | None) -> Plan | None
         return None
     events = dict.fromkeys(event for each in diverting.values() for event in each.events)
     policies = (*(Policy(event, RETURN) for event in events), *team.scene.policies)
+    trial = None if effort is None else effort.trial()
     with suppress(InfeasibleError):
-        found = plan(replace(team.scene, policies=policies), seed=seed, effort=effort)
+        found = plan(replace(team.scene, policies=policies), seed=seed, effort=trial)
         used, away = most_used(found, team.pilots), {each.robot for each in found.robots if each.steps}
         if all(used[name] <= team.pilots[name].limit for name in away & diverting.keys()):
             return found
@@ -351,7 +353,7 @@ def _general(team: Team, jobs: Sequence[Job], job: Job) -> str:
     laid_out = [each for each in materials if each is not None]
     whole = min(each.seconds(0, len(each) - 1) for each in laid_out)
     charges = "; ".join(
-        f"{name}: {team.pilots[name].limit:.0f} s a charge"
+        f"{name}: {team.pilots[name].limit:.0f} s a charge{kept_of_charge(team.pilots[name])}"
         + (", cannot recharge" if team.pilots[name].kinematics.recharge is None else "")
         for name in team.able(task.name)
     )

@@ -149,7 +149,7 @@ class Pilot:
             home = self.home(state, task)
         except UnreachableError:
             return None
-        return self._recharged(home, task) if home.used <= self.limit + _SAME else None
+        return self._recharged(home, task) if home.used <= self._to_return + _SAME else None
 
     def _reach_now(self, state: State, approach: ApproachRoute, ready: Ready, task: str) -> State | None:
         try:

@@ -244,7 +244,10 @@ class Travel:
         goal, surface = (*place, start[2]), (*place, self.robot.home[2])
         points = self.space.route(start, goal) if goal != start else (start,)
         if not self.kinematics.launches:
-            return self._timed(points if goal == surface else (*points, *self.space.route(goal, surface)[1:]))
+            upright = () if goal == surface else self.space.route(goal, surface)[1:]
+            route = self._timed((*points, *upright))
+            told = self.kinematics.setting_out().longest + self.kinematics.timing.reporting
+            return replace(route, longest=route.longest + told)
         down = self.come_down(goal)
         seconds = MoveSeconds(*(a + b for a, b in zip(self._gone(points), down.bounds, strict=True)))
         return self._route(points, seconds, length_of(points) + down.length, down.height)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import cached_property
 from math import dist
 
@@ -39,13 +40,16 @@ class Escapes:
 
         Where there is none, a robot that flies lands where it is, and any other stays.
         """
-        goal = self._goal(response, here)
-        if goal is None or goal[:2] == here[:2]:
+        goals = self._goals(response, here)
+        if not goals or any(goal[:2] == here[:2] for goal in goals):
             return self.straight(response, here)
-        try:
-            return self._down(self._space.route(here, goal))
-        except UnreachableError:
+        routes = []
+        for goal in goals:
+            with suppress(UnreachableError):
+                routes.append(self._space.route(here, goal))
+        if not routes:
             return self._down((here,)) if self._kinematics.launches else (here,)
+        return self._down(min(routes, key=self._space.seconds))
 
     def path(self, here: Position, goal: Position) -> tuple[Position, ...]:
         """Return the path to a position that keeps clear of forbidden areas and obstacles.
@@ -56,13 +60,18 @@ class Escapes:
         return (here,) if here == goal else self._space.route(here, goal)
 
     def _goal(self, response: str, here: Position) -> Position | None:
-        """Return the goal at the robot's altitude; None where the robot stays."""
+        """Return the nearest goal at the robot's altitude; None where the robot stays."""
+        places = self._goals(response, here)
+        nothing = here if response == "EMERGENCY_AREA" else None
+        return min(places, key=lambda place: dist(place, here), default=nothing)
+
+    def _goals(self, response: str, here: Position) -> list[Position]:
+        """Return the goals at the robot's altitude; none where the robot stays."""
         if response == "RETURN":
-            return (self._home[0], self._home[1], self._height(here))
+            return [(self._home[0], self._home[1], self._height(here))]
         if response == "EMERGENCY_AREA":
-            places = [(east, north, self._height(here)) for east, north in self._rally_points]
-            return min(places, key=lambda place: dist(place, here), default=here)
-        return None
+            return [(east, north, self._height(here)) for east, north in self._rally_points]
+        return []
 
     def _height(self, here: Position) -> float:
         return min(max(here[2], self._kinematics.floor), self._kinematics.ceiling)

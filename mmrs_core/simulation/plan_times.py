@@ -43,10 +43,10 @@ def as_simulated(plan: Plan, run: SimulatedRun, trace: Trace, robots: Collection
         plan,
         robots=tuple(_timed(each, away.get(each.robot, 0.0)) for each in plan.robots),
         makespan=makespan,
-        begins={task: min(begin for begin, _ in each) for task, each in tasks.items()},
-        ends={task: max(end for _, end in each) for task, each in tasks.items()},
+        begins={**plan.begins, **{task: min(begin for begin, _ in each) for task, each in tasks.items()}},
+        ends={**plan.ends, **{task: max(end for _, end in each) for task, each in tasks.items()}},
         lower_bound=min(plan.lower_bound, makespan) if alike else 0.0,
-        notes=(*plan.notes, *dict.fromkeys(_choices(run.records, robots))),
+        notes=(*dict.fromkeys(_choices(run.records, robots)), *plan.notes),
     )
 
 

@@ -102,6 +102,15 @@ def test_a_detour_leads_around_what_is_in_the_way():
     assert (800.0 - 10.0 - verdict.margin) * 2.0 > least - 15.0
 
 
+def test_a_detour_may_lead_over_what_is_in_the_way():
+    wall = square("wall", (250.0, 0.0), 200.0, high=20.0)
+    verdict = diverting(
+        robot("a", [go("high", (0.0, 0.0, 40.0)), go("low", (0.0, 0.0, 10.0))]), areas=(wall,)
+    )
+    assert verdict.move == "low"
+    assert verdict.margin == pytest.approx(800.0 - (40.0 + 30.0) / 2.0 - (30.0 + 500.0 + 40.0) / 2.0)
+
+
 def test_a_place_behind_what_is_in_the_way_is_reached_by_the_robots_own_path():
     wall = square("wall", (250.0, 0.0), 50.0)
     around = [go("aside", (250.0, 80.0, 0.0)), go("beyond", (400.0, 80.0, 0.0))]

@@ -50,6 +50,14 @@ def test_the_nearest_emergency_area_that_is_large_enough_is_taken():
     assert goal[2] == 0.0
 
 
+def test_the_emergency_area_is_taken_that_is_reached_first_not_the_one_behind_a_wall():
+    fence = Area("fence", AreaUse.FORBIDDEN, ((80.0, -90.0), (84.0, -90.0), (84.0, 90.0), (80.0, 90.0)))
+    near = Area("near", AreaUse.EMERGENCY, ((50.0, -9.0), (70.0, -9.0), (70.0, 9.0), (50.0, 9.0)))
+    far = Area("far", AreaUse.EMERGENCY, ((160.0, -9.0), (180.0, -9.0), (180.0, 9.0), (160.0, 9.0)))
+    goal = escapes_among(fence, near, far).clear("EMERGENCY_AREA", HERE)[-1]
+    assert shapely.Polygon(far.shell).contains(shapely.Point(goal[:2]))
+
+
 @pytest.mark.parametrize("response", ["HOLD", "CONTINUE", "STOP_THRUST"])
 def test_a_robot_that_holds_stays_where_it_is(response):
     assert escapes_among(WALL).clear(response, HERE) == (HERE,)

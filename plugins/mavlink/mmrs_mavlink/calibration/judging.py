@@ -21,8 +21,8 @@ Current = Callable[[str, str], float | None]
 def judged(flight: Flight, figures: Sequence[Figure], current: Current) -> tuple[Figure, ...]:
     """Return the figures with what keeps some from being written.
 
-    Those of legs hold together: they are written where the legs of the flight, from a stop to a stop, take
-    with them what they took, or less beside it than with what the type states.
+    Those of legs hold together: they are written where all legs of the flight together, from a stop to a
+    stop, take with them what they took, or are less beside it than with what the type states.
 
     Args:
         flight: that the figures are of.
