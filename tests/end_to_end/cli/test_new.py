@@ -5,6 +5,7 @@ import pty
 import sys
 from itertools import combinations, cycle
 from pathlib import Path
+from select import select
 
 import pytest
 
@@ -175,13 +176,23 @@ def test_a_disk_that_is_full_leaves_no_project(mmrs, tmp_path, monkeypatch):
     assert not (tmp_path / "field").exists()
 
 
+PATIENCE = 60.0
+"""Seconds after which a key is pressed again."""
+
+
 def in_a_terminal(folder, answers):
-    """Run `mmrs new` in a terminal of its own; answer each question; return exit code and what it showed."""
+    """Run `mmrs new` in a terminal of its own; answer each question; return exit code and what it showed.
+
+    A key is pressed again where nothing happens for long: an interrupt is lost that comes after Python has
+    shown a prompt and before it waits for the answer.
+    """
     process, terminal = pty.fork()
     if process == 0:
         os.execv(sys.executable, [sys.executable, "-m", "mmrs_core", "new", str(folder)])
-    shown, left = b"", list(answers)
+    shown, left, last = b"", list(answers), b""
     while True:
+        if not select([terminal], [], [], PATIENCE)[0]:
+            os.write(terminal, last)
         try:
             got = os.read(terminal, 4096)
         except OSError:
@@ -190,7 +201,8 @@ def in_a_terminal(folder, answers):
             break
         shown += got
         if left and shown.endswith(b": "):
-            os.write(terminal, left.pop(0))
+            last = left.pop(0)
+            os.write(terminal, last)
     os.close(terminal)
     return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), shown.decode()
 
