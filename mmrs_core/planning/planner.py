@@ -105,6 +105,8 @@ def _leaving_enough(team: Team, seed: int, effort: Effort | None) -> Plan | None
         found = plan(replace(team.scene, policies=policies), seed=seed, effort=trial)
         used, away = most_used(found, team.pilots), {each.robot for each in found.robots if each.steps}
         if all(used[name] <= team.pilots[name].limit for name in away & diverting.keys()):
+            if effort is not None and trial is not None:
+                effort.stopped = trial.stopped
             return found
     return None
 

@@ -8,6 +8,7 @@ from plain_scenes import CRAWLER, box, road, robot, scene, visit, with_kinematic
 from plan_replay import complaints
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import AreaUse
 from mmrs_runtime.policies import Policy
@@ -45,6 +46,22 @@ def reason(whole):
 def test_what_is_kept_for_a_diversion_makes_sorties_shorter():
     near, far = sound(flight(30.0)), sound(flight(1000.0))
     assert far.robots[0].sorties > near.robots[0].sorties
+
+
+def test_a_search_that_is_stopped_keeps_its_plan_where_that_leaves_enough_and_says_so():
+    whole = flight(30.0)
+    effort = Effort(3600.0, show=lambda best, least: effort.stop())
+    found = plan(whole, effort=effort)
+    assert effort.stopped
+    assert complaints(whole, found) == []
+
+
+def test_a_search_goes_on_where_the_plan_that_it_was_stopped_at_leaves_too_little():
+    whole = flight(1000.0)
+    effort = Effort(show=lambda best, least: effort.stop())
+    found = plan(whole, effort=effort)
+    assert complaints(whole, found) == []
+    assert found.makespan >= plan(whole).makespan
 
 
 def test_without_a_policy_nothing_is_kept():
