@@ -67,7 +67,7 @@ def mmrs_vehicles() -> Iterable[VehicleFactory]:
 
 @hookimpl
 def mmrs_map_symbols() -> Iterable[MapSymbol]:
-    """Contribute how the mission's control tasks look."""
+    """Contribute how control tasks and relays look."""
     return CORE_SYMBOLS
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from mmrs_core.analysis.clearance import CLEARANCE
 from mmrs_core.analysis.diversions import DIVERSION
 from mmrs_core.analysis.endurance import ENDURANCE, ENERGY, RECHARGE_CHECK
-from mmrs_core.analysis.envelope import ALTITUDE, DEPTH, RANGE, TEMPERATURE, WIND
+from mmrs_core.analysis.envelope import ALTITUDE, DEPTH, TEMPERATURE, WIND
 from mmrs_core.analysis.equipment import DEVICES, PAYLOAD, SPEED
+from mmrs_core.analysis.radio import RANGE
 from mmrs_core.analysis.separation import SEPARATION
 from mmrs_core.analysis.states import STATES
 from mmrs_core.analysis.structure import STRUCTURE

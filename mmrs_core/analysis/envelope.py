@@ -1,12 +1,12 @@
-"""The operating envelope of robots: altitude, depth, radio range, wind and temperature."""
+"""The operating envelope of robots: altitude, depth, wind and temperature."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import dist, isfinite
+from math import isfinite
 
-from mmrs_core.analysis.figures import MissingFigureError, home_of, kinematics_of, type_of
-from mmrs_core.analysis.motion import Motion, MovePath, motions, points_of
+from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, type_of
+from mmrs_core.analysis.motion import Motion, MovePath, motions
 from mmrs_core.analysis.states import GROUNDED, States, possible_states, states_of
 from mmrs_core.analysis.verdicts import (
     TOLERANCE,
@@ -131,46 +131,6 @@ DEPTH = Check(
     title="Robots dive no deeper than the pressure allows that they operate in.",
     run=for_each_robot(DEPTH_NAME, _judge_depth),
     hint="lift the task or move, or choose a robot with a larger maxOperatingPressure",
-)
-
-
-RANGE_NAME = "range"
-
-
-def _judge_range(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
-    reach = number(type_of(input, robot).part, "communicationRange")
-    if reach is None:
-        raise MissingFigureError(
-            f"{robot.id}: the communicationRange of robot type '{robot.type_name}' is not given"
-        )
-    home = home_of(robot)
-    motion = motions(input)[robot.id]
-    furthest: dict[int, float] = {}
-    for leg, point in points_of(motion):
-        # The distance to a point is convex along a leg, so that it is largest at a corner.
-        away = dist(home, point) + leg.radius + input.program.position_error
-        furthest[leg.move] = max(away, furthest.get(leg.move, 0.0))
-    yield from judged(
-        RANGE_NAME,
-        robot,
-        "m",
-        (_range_margin(robot, move, away, reach) for move, away in furthest.items()),
-        motion.gaps,
-    )
-
-
-def _range_margin(robot: RobotProgram, index: int, away: float, reach: float) -> Margin:
-    move = robot.moves[index]
-    led, limit = lengths(away, reach)
-    words = f"{move.kind} '{move.id}' leads {led} away from home, the radio reaches {limit}"
-    return Margin(reach - away, index, words)
-
-
-RANGE = Check(
-    name=RANGE_NAME,
-    title="Robots stay within the range of their radio, measured from home.",
-    run=for_each_robot(RANGE_NAME, _judge_range),
-    hint="move the home nearer, or choose a robot with a larger communicationRange",
 )
 
 

@@ -9,7 +9,7 @@ moves after it until one leads to a known target.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -135,10 +135,3 @@ def _known_end(kind: MoveKind, move: Move, home: Position | None) -> Whereabouts
         return None
     path = kind.path(move, target.position, home)
     return Ball(path[-1], target.tolerance) if path else None
-
-
-def points_of(motion: Motion) -> Iterator[tuple[MovePath, Position]]:
-    """Yield every corner of every leg: extremes of heights and distances lie there."""
-    for leg in motion.paths:
-        for point in leg.points:
-            yield leg, point

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _LONGEST_ICON = 2
 _MISSION = "urn:mmrs:mission:1.0"
+_CONTEXT = "urn:mmrs:context:1.0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,4 +102,5 @@ def words_of(name: str) -> str:
 CORE_SYMBOLS = (
     MapSymbol((_MISSION, "Fork"), "fork", "", "⋔"),
     MapSymbol((_MISSION, "Join"), "join", "", "⋈"),
+    MapSymbol((_CONTEXT, "Relay"), "relay", "", "⌁", ("range",), initial={"range": 1000.0}),
 )

@@ -23,7 +23,7 @@ class Context(mission.NamedElement):
     obstacles: list[Obstacle]
     """Obstacles."""
     elements: list[ContextElement]
-    """Further elements that missions refer to, of types that plug-ins add."""
+    """Further elements that missions refer to: relays of radios, and those of types that plug-ins add."""
     environment: Environment | None
     """Weather and water."""
     def __init__(
@@ -71,11 +71,25 @@ class Obstacle(Area):
     ) -> None: ...
 
 class ContextElement(mission.NamedElement):
-    """An element that missions refer to; plug-ins extend it with panel groups, moorings, pipelines and the like."""
+    """An element of the surroundings; plug-ins extend it with panel groups, moorings, pipelines and the like."""
     def __init__(
         self,
         *,
         name: str | None = ...,
+    ) -> None: ...
+
+class Relay(ContextElement):
+    """A relay that stands still, such as a mast, a moored boat or a parked vehicle: it passes on the radio between robots, other relays and the control station, which is at a robot's home. Two of them reach each other where their distance is at most the smaller of both ranges; the range of a robot, and of the control station for that robot, is the communicationRange of its type. A robot is in range where it reaches its home, or a relay from which a chain of relays leads there."""
+    position: mission.Coordinate
+    """Where its antenna is."""
+    range: float
+    """Maximum range of its radio, in metres."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        position: mission.Coordinate | None = ...,
+        range: float | None = ...,
     ) -> None: ...
 
 class Environment(Element):

@@ -44,7 +44,7 @@ class Robot(Element):
     pressuremeter: bool
     """Whether a pressure meter is on board."""
     communicationRange: float | None
-    """Maximum range of the radio control, in metres; absent: unknown."""
+    """Maximum range of the radio control, in metres, to the control station at home or to a relay of the context; absent: unknown."""
     dataRate: float | None
     """Data rate between robot and control station, in kilobits per second."""
     radioFrequency: float | None

@@ -128,6 +128,13 @@ CONSTRAINTS = (
         "draw the area smaller if robots may come into it",
     ),
     Constraint(
+        "CTX020",
+        "The range of a relay is more than 0.",
+        (CONTEXT, "Relay"),
+        _positive("range"),
+        "give the range of its radio in metres",
+    ),
+    Constraint(
         "CTX011",
         "Wind, current and sunshine are not negative.",
         (CONTEXT, "Environment"),
