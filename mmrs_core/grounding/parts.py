@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping
 from itertools import chain
 from math import inf
-from typing import TypeVar
+from typing import TypeVar, get_args
 
 from mmrs_core.grounding.coordinates import Ground
-from mmrs_core.grounding.features import children, number
+from mmrs_core.grounding.features import children, literal, number, texts
 from mmrs_core.grounding.frame import MISSION, is_geographic, is_relative
 from mmrs_core.languages.element import (
     Element,
@@ -19,7 +19,7 @@ from mmrs_core.languages.element import (
     place_of,
 )
 from mmrs_core.languages.metaclass import Feature
-from mmrs_core.scene import Area, AreaUse, Frame, Part, Position, Ring, Value
+from mmrs_core.scene import Area, AreaUse, Corridor, CorridorUse, Frame, Part, Position, Ring, Value
 
 Vertex = TypeVar("Vertex")
 NO_GROUND = Ground(Frame("EPSG:4326", None, None), {})
@@ -118,7 +118,10 @@ def use_of(area: Element) -> AreaUse:
 
 
 def heights_of(area: Element) -> tuple[float, float]:
-    """Return the heights of an area's lower and upper side, metres above the origin; infinite if absent."""
+    """Return the heights of the lower and upper side of an area or corridor.
+
+    Metres above the origin; infinite if absent.
+    """
     low, high = number(area, "minHeight"), number(area, "maxHeight")
     return -inf if low is None else low, inf if high is None else high
 
@@ -145,6 +148,35 @@ def area_of(area: Element, ground: Ground, name: str = "") -> Area:
         high=high,
         safety_distance=number(area, "safetyDistance") or 0.0,
         part=part,
+    )
+
+
+_CORRIDOR_USES: tuple[CorridorUse, ...] = get_args(CorridorUse)
+
+
+def corridor_of(corridor: Element, ground: Ground, name: str = "") -> Corridor:
+    """Return a corridor of the context as drawn.
+
+    Args:
+        corridor: a context.Corridor.
+        ground: of the context's coordinates.
+        name: instead of its own; without either it is named after its place in the list.
+
+    Raises:
+        ValueError: if a place of its line has no position.
+    """
+    low, high = heights_of(corridor)
+    types = texts(corridor, "robotTypes")
+    line = (position_of(each, ground)[:2] for each in children(corridor, "line"))
+    return Corridor(
+        name=name or label_of(corridor) or path_of(corridor).lstrip("/"),
+        line=tuple(line),
+        width=number(corridor, "width") or 0.0,
+        low=low,
+        high=high,
+        use=literal(corridor, "use", _CORRIDOR_USES, "BOTH"),
+        types=frozenset(types) if types else None,
+        part=part_of(corridor, ground),
     )
 
 

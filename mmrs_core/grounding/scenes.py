@@ -10,13 +10,14 @@ from mmrs_core.errors import InvalidModelError
 from mmrs_core.grounding.coordinates import Ground, ground_of
 from mmrs_core.grounding.features import child, children, literal, number, policies_of, text, texts, value
 from mmrs_core.grounding.frame import fault
-from mmrs_core.grounding.parts import area_of, names_of, part_of, position_of
+from mmrs_core.grounding.parts import area_of, corridor_of, names_of, part_of, position_of
 from mmrs_core.grounding.robots import MISSING, robot_type_of
 from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of, place_of
 from mmrs_core.languages.metaclass import Enumeration
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import (
     Area,
+    Corridor,
     Dependency,
     Robot,
     RobotType,
@@ -29,6 +30,7 @@ __all__ = [
     "Ground",
     "area_of",
     "areas_of",
+    "corridors_of",
     "environment_of",
     "ground",
     "ground_of",
@@ -66,6 +68,7 @@ def ground(models: ModelSet) -> Scene:
         robots=_robots(models, laid),
         areas=areas_of(context, laid) if context is not None else (),
         elements=tuple(part_of(each, laid) for each in children(context, "elements")),
+        corridors=corridors_of(context, laid) if context is not None else (),
         environment=environment_of(context) if context is not None else {},
         transit_altitude=number(mission, "transitAltitude"),
         minimum_separation=number(mission, "minimumSeparation"),
@@ -127,6 +130,13 @@ def areas_of(context: Element, laid: Ground) -> tuple[Area, ...]:
     """Return what a context forbids, what is in the way there, and where robots may flee to."""
     areas = names_of(each for feature in AREAS for each in children(context, feature))
     return tuple(area_of(each, laid, name) for each, name in areas.items())
+
+
+def corridors_of(context: Element, laid: Ground) -> tuple[Corridor, ...]:
+    """Return the corridors of a context."""
+    return tuple(
+        corridor_of(each, laid, name) for each, name in names_of(children(context, "corridors")).items()
+    )
 
 
 def environment_of(context: Element) -> dict[str, float]:

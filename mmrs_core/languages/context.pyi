@@ -1,12 +1,15 @@
 """Typed stubs of urn:mmrs:context:1.0, made by "mmrs metamodel stubs"; not to be edited."""
 
 from collections.abc import Iterable
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 from mmrs_core.languages import mission
 from mmrs_core.languages.element import Element
 
 NS_URI: Final[str]
+
+CorridorUse: TypeAlias = Literal["BOTH", "ENTRY", "EXIT"]
+"""Directions in which robots may go through a corridor."""
 
 class Context(mission.NamedElement):
     """The surroundings of a mission: areas to keep clear of, emergency areas, obstacles, and further elements."""
@@ -22,6 +25,8 @@ class Context(mission.NamedElement):
     """Areas that robots may go to in an emergency."""
     obstacles: list[Obstacle]
     """Obstacles."""
+    corridors: list[Corridor]
+    """Corridors through which robots come from home to their tasks and go back; absent: they may take any path."""
     elements: list[ContextElement]
     """Further elements that missions refer to: relays of radios, and those of types that plug-ins add."""
     environment: Environment | None
@@ -36,6 +41,7 @@ class Context(mission.NamedElement):
         forbiddenAreas: Iterable[Area] | None = ...,
         emergencyAreas: Iterable[Area] | None = ...,
         obstacles: Iterable[Obstacle] | None = ...,
+        corridors: Iterable[Corridor] | None = ...,
         elements: Iterable[ContextElement] | None = ...,
         environment: Environment | None = ...,
     ) -> None: ...
@@ -68,6 +74,32 @@ class Obstacle(Area):
         safetyDistance: float | None = ...,
         minHeight: float | None = ...,
         maxHeight: float | None = ...,
+    ) -> None: ...
+
+class Corridor(mission.NamedElement):
+    """A passage between where robots start and where they work, such as an agreed piece of airspace, a harbour entrance or a gate. Every sortie leads through one whole corridor before its first task, and through one whole corridor back home after its last."""
+    line: list[mission.Coordinate]
+    """The centre line in the direction of entry, from outside to the field of work; heights of its positions do not count."""
+    width: float
+    """Distance between its two sides, in metres; robots keep their clearance from both."""
+    minHeight: float | None
+    """Height of its lower side above the mission's origin, in metres; absent: down to the ground and beyond."""
+    maxHeight: float | None
+    """Height of its upper side above the mission's origin, in metres; absent: unlimited."""
+    use: CorridorUse
+    """Directions in which robots may go through it."""
+    robotTypes: list[str]
+    """Names of the robot types that it is for; absent: all."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        line: Iterable[mission.Coordinate] | None = ...,
+        width: float | None = ...,
+        minHeight: float | None = ...,
+        maxHeight: float | None = ...,
+        use: CorridorUse | None = ...,
+        robotTypes: Iterable[str] | None = ...,
     ) -> None: ...
 
 class ContextElement(mission.NamedElement):

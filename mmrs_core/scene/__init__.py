@@ -9,7 +9,7 @@ metaclass without seeing a model.
 
 from typing import TYPE_CHECKING
 
-from mmrs_core.scene.missions import Area, AreaUse, Dependency, Frame, Scene, Task
+from mmrs_core.scene.missions import Area, AreaUse, Corridor, CorridorUse, Dependency, Frame, Scene, Task
 from mmrs_core.scene.primitives import (
     AltitudeReference,
     Metaclasses,
@@ -70,6 +70,8 @@ __all__ = [
     "Battery",
     "Branch",
     "Capability",
+    "Corridor",
+    "CorridorUse",
     "Coverage",
     "Dependency",
     "Device",

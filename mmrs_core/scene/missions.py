@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from math import inf
+from typing import Literal, TypeAlias
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.scene.primitives import AltitudeReference, Part, Ring
+from mmrs_core.scene.primitives import AltitudeReference, Part, Point, Ring
 from mmrs_core.scene.robots import Robot
 from mmrs_core.scene.works import Work
 from mmrs_runtime.policies import Policy
@@ -48,6 +49,47 @@ class Area:
     def concerns(self, robot_type: str) -> bool:
         """Return whether robots of the type of that name must respect the area."""
         return self.types is None or robot_type in self.types
+
+
+CorridorUse: TypeAlias = Literal["BOTH", "ENTRY", "EXIT"]
+
+
+@dataclass(frozen=True, slots=True)
+class Corridor:
+    """A corridor as drawn: a line with a width, between two heights.
+
+    Attributes:
+        name: as in the context, or made from its place in the list.
+        line: (east, north) of its centre line in the direction of entry, two places or more.
+        width: metres between its two sides.
+        low: height of its lower side above the origin, metres; -inf where unlimited.
+        high: height of its upper side; inf where unlimited.
+        use: directions in which robots may go through it.
+        types: names of the robot types that it is for; None: all.
+    """
+
+    name: str
+    line: tuple[Point, ...]
+    width: float
+    low: float = -inf
+    high: float = inf
+    use: CorridorUse = "BOTH"
+    types: frozenset[str] | None = None
+    part: Part = field(default_factory=lambda: Part((), {}))
+
+    def concerns(self, robot_type: str) -> bool:
+        """Return whether it is for robots of the type of that name."""
+        return self.types is None or robot_type in self.types
+
+    @property
+    def way_in(self) -> tuple[Point, ...]:
+        """Return the line on which robots come in; empty where they may not."""
+        return self.line if self.use != "EXIT" else ()
+
+    @property
+    def way_out(self) -> tuple[Point, ...]:
+        """Return the line on which robots go out, which is the reverse; empty where they may not."""
+        return self.line[::-1] if self.use != "ENTRY" else ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +178,7 @@ class Scene:
         tasks: in the mission's order; control tasks included.
         areas: as drawn, forbidden areas, obstacles and emergency areas.
         elements: context elements of plug-ins.
+        corridors: through which robots come from home to their tasks and go back.
         environment: by attribute name; absent where not known.
         works: by (task name, robot name): what the task is made of for that robot; filled when the
             scene is expanded. A pair that is missing means the robot cannot do the task; why is in
@@ -150,6 +193,7 @@ class Scene:
     robots: tuple[Robot, ...]
     areas: tuple[Area, ...] = ()
     elements: tuple[Part, ...] = ()
+    corridors: tuple[Corridor, ...] = ()
     environment: Mapping[str, float] = field(default_factory=dict)
     transit_altitude: float | None = None
     minimum_separation: float | None = None

@@ -16,10 +16,10 @@ from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import AreaUse
 
 
-def _upside_down(obstacle: Element, models: ModelSet) -> Iterator[Finding]:
-    low, high = number(obstacle, "minHeight"), number(obstacle, "maxHeight")
+def _upside_down(element: Element, models: ModelSet) -> Iterator[Finding]:
+    low, high = number(element, "minHeight"), number(element, "maxHeight")
     if low is not None and high is not None and low >= high:
-        yield finding(obstacle, f"its minHeight of {low:g} m is not below its maxHeight of {high:g} m")
+        yield finding(element, f"its minHeight of {low:g} m is not below its maxHeight of {high:g} m")
 
 
 _TALL = 1000.0
@@ -97,13 +97,22 @@ def _too_cold_or_hot(environment: Element, models: ModelSet) -> Iterator[Finding
         )
 
 
+_SWAP = "swap them, or leave out the one that is not known"
+
 CONSTRAINTS = (
     Constraint(
         "CTX007",
         "The lower side of an obstacle is below its upper side.",
         (CONTEXT, "Obstacle"),
         _upside_down,
-        "swap them, or leave out the one that is not known",
+        _SWAP,
+    ),
+    Constraint(
+        "CTX019",
+        "The lower side of a corridor is below its upper side.",
+        (CONTEXT, "Corridor"),
+        _upside_down,
+        _SWAP,
     ),
     Constraint(
         "CTX017",

@@ -112,9 +112,9 @@ CONSTRAINTS = (
     ),
     Constraint(
         "CTX002",
-        "Areas and elements of a context have different names.",
+        "Areas, corridors and elements of a context have different names.",
         (CONTEXT, "Context"),
-        _unique("forbiddenAreas", "obstacles", "emergencyAreas", "elements"),
+        _unique("forbiddenAreas", "obstacles", "emergencyAreas", "corridors", "elements"),
         _RENAME,
         Severity.WARNING,
     ),

@@ -135,6 +135,13 @@ CONSTRAINTS = (
         "give the range of its radio in metres",
     ),
     Constraint(
+        "CTX018",
+        "A corridor has a width.",
+        (CONTEXT, "Corridor"),
+        _positive("width"),
+        "give the metres from one side of the corridor to the other",
+    ),
+    Constraint(
         "CTX011",
         "Wind, current and sunshine are not negative.",
         (CONTEXT, "Environment"),

@@ -65,6 +65,17 @@ def _directions(wrong: Wrong) -> Iterator[Edit]:
             yield with_value(attribute, f"{value % 360.0:.12g}")
 
 
+def _unsigned(name: str) -> Callable[[Wrong], Iterator[Edit]]:
+    """Return what takes the sign from a negative number."""
+
+    def edits(wrong: Wrong) -> Iterator[Edit]:
+        attribute, value = wrong.tag.attribute(name), _number(wrong.tag, name)
+        if attribute is not None and value is not None and value < 0.0:
+            yield with_value(attribute, attribute.value.strip().removeprefix("-"))
+
+    return edits
+
+
 def _vertices(name: str) -> Callable[[Wrong], Iterator[Edit]]:
     """Return what takes away vertices that repeat an earlier one to the letter."""
 
@@ -115,6 +126,8 @@ def _number(tag: Tag, name: str) -> float | None:
 FIXES = (
     Fix("RL017", "exchange min and max", exchanged("min", "max")),
     Fix("CTX007", "exchange minHeight and maxHeight", exchanged("minHeight", "maxHeight")),
+    Fix("CTX018", "write the width without its sign", _unsigned("width")),
+    Fix("CTX019", "exchange minHeight and maxHeight", exchanged("minHeight", "maxHeight")),
     Fix("MML027", "exchange latitude and longitude", _places_exchanged),
     Fix("MML029", "give the latitude the other sign", _places_turned("latitude")),
     Fix("MML030", "give the longitude the other sign", _places_turned("longitude")),

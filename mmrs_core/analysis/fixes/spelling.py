@@ -195,18 +195,28 @@ def _names(wrong: Wrong, element: Element, kind: Metaclass) -> Iterator[str]:
     return NamedElements((root_of(element), *(root for each in models for root in each.roots))).names(kind)
 
 
-def _accepted(wrong: Wrong) -> Iterator[Edit]:
-    for tag in wrong.tag.named("acceptedUnknowns"):
-        content = wrong.markup.data[tag.inside : tag.closing].decode()
-        right = meant(content, wrong.checks) if content not in wrong.checks else None
-        if right is not None:
-            yield Edit(tag.inside, tag.closing, right)
-    attribute = wrong.tag.attribute("acceptedUnknowns")
-    for word in attribute.value.split() if attribute is not None else ():
-        right = meant(word, wrong.checks) if word not in wrong.checks else None
-        if attribute is not None and right is not None:
-            words = [right if each == word else each for each in attribute.value.split()]
-            yield with_value(attribute, " ".join(words))
+def _listed(feature: str, known: Callable[[Wrong], Iterable[str]]) -> Callable[[Wrong], Iterator[Edit]]:
+    """Return what gives each value of a list the one known name that it was meant for."""
+
+    def edits(wrong: Wrong) -> Iterator[Edit]:
+        names = tuple(known(wrong))
+        for tag in wrong.tag.named(feature):
+            content = wrong.markup.data[tag.inside : tag.closing].decode()
+            right = meant(content, names) if content not in names else None
+            if right is not None:
+                yield Edit(tag.inside, tag.closing, right)
+        attribute = wrong.tag.attribute(feature)
+        for word in attribute.value.split() if attribute is not None else ():
+            right = meant(word, names) if word not in names else None
+            if attribute is not None and right is not None:
+                words = [right if each == word else each for each in attribute.value.split()]
+                yield with_value(attribute, " ".join(words))
+
+    return edits
+
+
+def _checks(wrong: Wrong) -> Iterable[str]:
+    return wrong.checks
 
 
 def _types(wrong: Wrong) -> Iterator[str]:
@@ -242,6 +252,7 @@ FIXES = (
     Fix("BL036", "correct the identifier of the device", _named("deviceId", _devices)),
     Fix("BL037", "correct the name of the action", _named("actionName", _actions)),
     Fix("BL039", "correct the identifier of the device", _named("deviceId", _devices)),
-    Fix("MML012", "correct the name of the check", _accepted),
-    Fix("BL049", "correct the name of the check", _accepted),
+    Fix("CTX027", "correct the name of the robot type", _listed("robotTypes", _types)),
+    Fix("MML012", "correct the name of the check", _listed("acceptedUnknowns", _checks)),
+    Fix("BL049", "correct the name of the check", _listed("acceptedUnknowns", _checks)),
 )

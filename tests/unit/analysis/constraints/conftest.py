@@ -68,6 +68,16 @@ def place() -> Element:
             )
         ],
         emergencyAreas=[context.Area(name="meadow", shell=box(-200, -200, 50), safetyDistance=2.0)],
+        corridors=[
+            context.Corridor(
+                name="gate",
+                line=[at(20, 20), at(60, 60)],
+                width=10.0,
+                minHeight=10.0,
+                maxHeight=50.0,
+                robotTypes=["quad"],
+            )
+        ],
         environment=context.Environment(
             windSpeed=3.0,
             windDirection=270.0,

@@ -63,6 +63,9 @@ SPOILT = {
     "CTX006": (DAM, "context.xmi", VERTEX, VERTEX + VERTEX),
     "CTX007": (DAM, "context.xmi", 'minHeight="4.0" maxHeight="9.0"', 'minHeight="9.0" maxHeight="4.0"'),
     "CTX012": (DAM, "context.xmi", 'windDirection="310"', 'windDirection="-50"'),
+    "CTX018": (DAM, "context.xmi", 'width="60.0"', 'width="-60.0"'),
+    "CTX019": (DAM, "context.xmi", 'minHeight="10.0" maxHeight="50.0"', 'minHeight="50.0" maxHeight="10.0"'),
+    "CTX027": (DAM, "context.xmi", ">Camera drone<", ">camera-drone<"),
     "RL017": (
         DAM,
         "robots/camera-drone.xmi",
@@ -77,6 +80,13 @@ ADDED = {
     "MML012": ('name="Dam inspection"', 'acceptedUnknowns="clearance" name="Dam inspection"'),
     "CTX012": ('windDirection="310.0"', 'windDirection="310"'),
 }
+CORRIDOR = """  <corridors name="crest road" width="60.0" minHeight="10.0" maxHeight="50.0">
+    <line xsi:type="mission:GeoCoordinate" latitude="42.5385" longitude="13.3940"/>
+    <line xsi:type="mission:GeoCoordinate" latitude="42.5385" longitude="13.3945"/>
+    <robotTypes>Camera drone</robotTypes>
+  </corridors>
+"""
+ADDED |= dict.fromkeys(("CTX018", "CTX019", "CTX027"), ("  <environment ", f"{CORRIDOR}  <environment "))
 """What a sound text is made to say first, so that it can be spoilt."""
 ELSEWHERE = {"MML072": "shells of tasks are mended as those of areas", "XMI014": "see below"}
 

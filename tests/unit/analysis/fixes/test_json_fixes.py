@@ -59,6 +59,9 @@ SPOILT = {
     "CTX006": (DAM, CONTEXT, None, None),
     "CTX007": (DAM, CONTEXT, None, None),
     "CTX012": (DAM, CONTEXT, '"windDirection": 310', '"windDirection": -50'),
+    "CTX018": (DAM, CONTEXT, '"width": 60.0', '"width": -60.0'),
+    "CTX019": (DAM, CONTEXT, '10.0, "maxHeight": 50.0', '50.0, "maxHeight": 10.0'),
+    "CTX027": (DAM, CONTEXT, '"Camera drone"', '"camera-drone"'),
     "RL017": (DAM, "robots/camera-drone.json", '{"min": -10, "max": 40}', '{"min": 40, "max": -10}'),
 }
 ADDED = {
@@ -69,6 +72,22 @@ ADDED = {
     "CTX012": ('"windDirection": 310.0', '"windDirection": 310'),
     "RL017": ('{"min": -10.0, "max": 40.0}', '{"min": -10, "max": 40}'),
 }
+CORRIDOR = """  "corridors": [
+    {
+      "name": "crest road",
+      "width": 60.0,
+      "minHeight": 10.0, "maxHeight": 50.0,
+      "line": [
+        {"$type": "mission:GeoCoordinate", "latitude": 42.5385, "longitude": 13.394},
+        {"$type": "mission:GeoCoordinate", "latitude": 42.5385, "longitude": 13.3945}
+      ],
+      "robotTypes": ["Camera drone"]
+    }
+  ],
+"""
+ADDED |= dict.fromkeys(
+    ("CTX018", "CTX019", "CTX027"), ('  "forbiddenAreas"', f'{CORRIDOR}  "forbiddenAreas"')
+)
 """What a sound text is made to say first, so that it can be spoilt."""
 ELSEWHERE = {"MML072": "shells of tasks are mended as those of areas", "XMI014": "see below"}
 
