@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from mmrs_core.cli.output import counted, table
 from mmrs_core.pictures.explanations import sections_of
 from mmrs_core.pictures.figures import clock, energy, length, telling, within
-from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
+from mmrs_core.scene import Plan, RobotPlan, Scene, Serve, all_steps
 
 if TYPE_CHECKING:
     from mmrs_core.planning.explaining import Alternative, PlanExplanation
@@ -128,15 +128,7 @@ def _alternative(each: Alternative) -> Mapping[str, object]:
 
 def tasks_of(robot: RobotPlan) -> tuple[str, ...]:
     """Return the names of the tasks that a robot serves, in the order in which it begins them."""
-    return tuple(dict.fromkeys(step.task for step in _flat(robot.steps) if isinstance(step, Serve)))
-
-
-def _flat(steps: tuple[Step, ...]) -> Iterator[Step]:
-    for step in steps:
-        yield step
-        if isinstance(step, Branch):
-            for _, arm in step.arms:
-                yield from _flat(arm)
+    return tuple(dict.fromkeys(step.task for step in all_steps(robot.steps) if isinstance(step, Serve)))
 
 
 def _row(scene: Scene, robot: RobotPlan) -> tuple[str, ...]:

@@ -111,10 +111,9 @@ def picture_of(stages: CommandStages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
     from mmrs_core.pictures.preview.from_models import with_problems
     from mmrs_core.pictures.preview.from_plan import picture_of_plan
-    from mmrs_core.pictures.preview.moves import with_moves
 
     symbols = stages.session.contributions.map_symbols
-    picture = with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
+    picture = picture_of_plan(stages.scene, stages.timed, symbols, stages.transformed[1].moves())
     picture = with_problems(picture, stages.models, stages.warnings)
     return replace(picture, checks=verdict_rows(stages.verdicts))
 

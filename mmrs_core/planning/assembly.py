@@ -9,7 +9,7 @@ from mmrs_core.planning.omissions import omissions_of
 from mmrs_core.planning.schedule import Schedule, signal_name
 from mmrs_core.planning.states import State
 from mmrs_core.planning.team import Team, homebound_of
-from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step
+from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step, all_steps
 from mmrs_core.scene.attributes import number
 
 _NOTES = (
@@ -54,7 +54,7 @@ def _of_works(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> Iterator[s
     """Yield the notes of works that the plan contains; robots that share a note in one line."""
     found: dict[tuple[str, str], dict[str, None]] = {}
     for robot, mine in steps.items():
-        for serve in _serves(mine):
+        for serve in (each for each in all_steps(mine) if isinstance(each, Serve)):
             for note in scene.works[serve.task, robot].notes:
                 found.setdefault((serve.task, note), {})[robot] = None
     for (task, note), robots in found.items():
@@ -125,7 +125,7 @@ def spans_of(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> dict[str, t
     """Return when each task of a plan begins and ends."""
     spans: dict[str, tuple[float, float]] = {}
     for mine in steps.values():
-        for serve in _serves(mine):
+        for serve in (each for each in all_steps(mine) if isinstance(each, Serve)):
             begin, end = spans.get(serve.task, (serve.begin, serve.end))
             spans[serve.task] = (min(begin, serve.begin), max(end, serve.end))
         spans |= {step.task: (step.begin, step.begin) for step in mine if isinstance(step, Branch)}
@@ -134,15 +134,6 @@ def spans_of(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> dict[str, t
             time = _control_time(scene, task.name, spans)
             spans[task.name] = (time, time)
     return {task.name: spans[task.name] for task in scene.tasks if task.name in spans}
-
-
-def _serves(steps: Iterable[Step]) -> Iterator[Serve]:
-    for step in steps:
-        if isinstance(step, Serve):
-            yield step
-        elif isinstance(step, Branch):
-            for _, arm in step.arms:
-                yield from _serves(arm)
 
 
 def _control_time(scene: Scene, name: str, spans: Mapping[str, tuple[float, float]]) -> float:

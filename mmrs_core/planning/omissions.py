@@ -11,7 +11,7 @@ from mmrs_core.geometry.polygons import parts, polygon
 from mmrs_core.planning.coverage import blocks_at
 from mmrs_core.planning.footprints import GRID
 from mmrs_core.planning.pockets import pockets_of
-from mmrs_core.scene import Branch, Coverage, Omission, Position, Robot, Scene, Serve, Step, Work
+from mmrs_core.scene import Coverage, Omission, Position, Robot, Scene, Serve, Step, Work, all_steps
 
 _LEAST = 0.05
 """Square metres, or metres, under which what is left out is rounding."""
@@ -25,7 +25,7 @@ def omissions_of(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[O
     """
     served = dict[str, list[str]]()
     for robot_name, taken in steps.items():
-        for name in dict.fromkeys(_served(taken)):
+        for name in dict.fromkeys(each.task for each in all_steps(taken) if isinstance(each, Serve)):
             served.setdefault(name, []).append(robot_name)
     found = list[Omission]()
     for task in scene.tasks:
@@ -41,15 +41,6 @@ def amount_left_out(work: Work) -> float:
     if work.coverage is not None:
         return float(uncovered(work.coverage).area)
     return sum(gap.length for gap in work.gaps)
-
-
-def _served(steps: tuple[Step, ...]) -> Iterator[str]:
-    for step in steps:
-        if isinstance(step, Serve):
-            yield step.task
-        elif isinstance(step, Branch):
-            for _, arm in step.arms:
-                yield from _served(arm)
 
 
 def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[Omission]:

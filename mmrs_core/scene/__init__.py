@@ -58,6 +58,7 @@ if TYPE_CHECKING:
         Signal,
         Step,
         Transit,
+        all_steps,
     )
 
 __all__ = [
@@ -109,12 +110,13 @@ __all__ = [
     "TravelMode",
     "Value",
     "Work",
+    "all_steps",
     "distinct_works",
 ]
 
 
 def __getattr__(name: str) -> object:
-    """Return a class of plans; their module is imported late, since validating needs none of its many."""
+    """Return a name of plans; their module is imported late, since validating needs none of its many."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from mmrs_core.scene import plans

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from mmrs_core.scene.primitives import Position
@@ -104,6 +104,15 @@ class Branch(Step):
 
     arms: tuple[tuple[str | None, tuple[Step, ...]], ...]
     exit: Position
+
+
+def all_steps(steps: Iterable[Step]) -> Iterator[Step]:
+    """Yield steps in order, and after a choice all that is in its arms."""
+    for step in steps:
+        yield step
+        if isinstance(step, Branch):
+            for _, arm in step.arms:
+                yield from all_steps(arm)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import inf
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
-from mmrs_core.scene import Plan, RobotPlan
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.scene import Await, Branch, Plan, Recharge, RobotPlan, Serve, Signal, Step, all_steps
 
 if TYPE_CHECKING:
     from mmrs_core.simulation.run import SimulatedRun
@@ -19,32 +17,27 @@ if TYPE_CHECKING:
 SAME = 0.01
 """Share by which times may differ that a bound of the planner is compared with."""
 
-RECHARGE = (BEHAVIOUR, "Recharge")
-AT_HOME = tuple((BEHAVIOUR, name) for name in ("Start", "Stop", "HoldPosition"))
-
-NOT_SERVING = frozenset({"launch", "transit", "recover", "recharge", "wait", "choice", "notify"})
-
 
 def as_simulated(plan: Plan, run: SimulatedRun, trace: Trace, robots: Collection[RobotProgram]) -> Plan:
-    """Return a plan with the times of a run of its behaviour; its steps keep the planner's.
+    """Return a plan with the times of a run of its behaviour.
 
     The planner allows for turns and searches that take as long as they can, and knows neither where robots
-    look before a leg, nor how fast they still are.
+    look before a leg, nor how fast they still are. What is on an arm of a choice that was not taken keeps the
+    planner's durations.
     """
-    spans = _spans(run.records)
-    tasks: dict[str, list[tuple[float, float]]] = {}
-    for link in trace.links:
-        if link.task in plan.begins and link.rule not in NOT_SERVING and (link.robot, link.move) in spans:
-            tasks.setdefault(link.task, []).append(spans[link.robot, link.move])
-    away = {robot.id: _away(robot, spans) for robot in robots}
+    moves, spans = trace.moves(), _spans(run.records)
+    timed = tuple(_timed(each, _Retiming(each.robot, moves, spans)) for each in plan.robots)
+    served: dict[str, list[Step]] = {}
+    for step in (step for each in timed for step in all_steps(each.steps) if isinstance(step, Serve)):
+        served.setdefault(step.task, []).append(step)
     makespan = run.ending.time
     alike = abs(makespan - plan.makespan) <= SAME * plan.makespan
     return replace(
         plan,
-        robots=tuple(_timed(each, away.get(each.robot, 0.0)) for each in plan.robots),
+        robots=timed,
         makespan=makespan,
-        begins={**plan.begins, **{task: min(begin for begin, _ in each) for task, each in tasks.items()}},
-        ends={**plan.ends, **{task: max(end for _, end in each) for task, each in tasks.items()}},
+        begins={**plan.begins, **{task: min(step.begin for step in own) for task, own in served.items()}},
+        ends={**plan.ends, **{task: max(step.end for step in own) for task, own in served.items()}},
         lower_bound=min(plan.lower_bound, makespan) if alike else 0.0,
         notes=(*dict.fromkeys(_choices(run.records, robots)), *plan.notes),
     )
@@ -65,29 +58,93 @@ def _choices(records: Iterable[StepRecord], robots: Collection[RobotProgram]) ->
 
 
 def _spans(records: Iterable[StepRecord]) -> Mapping[tuple[str, str], tuple[float, float]]:
-    """Return when each move began, and when the last step of it was made, its actions included."""
+    """Return when each move began and ended, its actions included, what is waited for after it not.
+
+    A record tells when its step ended; the first of a move began with the record before it.
+    """
     found: dict[tuple[str, str], tuple[float, float]] = {}
+    latest: dict[str, float] = {}
     for each in records:
-        begin, _ = found.get((each.robot, each.move), (each.time, each.time))
-        found[each.robot, each.move] = begin, each.time
+        before = latest.get(each.robot, 0.0)
+        latest[each.robot] = each.time
+        if each.label not in ("take", "choose"):
+            begin, _ = found.get((each.robot, each.move), (before, each.time))
+            found[each.robot, each.move] = begin, each.time
     return found
 
 
-def _away(robot: RobotProgram, spans: Mapping[tuple[str, str], tuple[float, float]]) -> float:
-    """Return for how many seconds a robot is away from home: from the first move of a sortie to its last."""
-    made = [(*spans[robot.id, move.id], move) for move in robot.moves if (robot.id, move.id) in spans]
-    seconds, sortie = 0.0, (inf, -inf)
-    for begin, end, move in sorted(made, key=itemgetter(0, 1)):
-        if move.is_a(RECHARGE):
-            seconds, sortie = seconds + max(0.0, sortie[1] - sortie[0]), (inf, -inf)
-        elif not any(move.is_a(each) for each in AT_HOME):
-            sortie = min(sortie[0], begin), end
-    return seconds + max(0.0, sortie[1] - sortie[0])
+class _Retiming:
+    """Gives the steps of a robot the times of the moves that carry them out.
+
+    Args:
+        moves: by robot and the step's number, as `all_steps` counts.
+        spans: when each move that was made began and ended.
+    """
+
+    def __init__(
+        self,
+        robot: str,
+        moves: Mapping[tuple[str, int], Sequence[str]],
+        spans: Mapping[tuple[str, str], tuple[float, float]],
+    ) -> None:
+        self._moves = {number: own for (name, number), own in moves.items() if name == robot}
+        self._spans = {move: span for (name, move), span in spans.items() if name == robot}
+        self._count = 0
+
+    def steps(self, steps: Iterable[Step], now: float = 0.0, *, taken: bool = True) -> tuple[Step, ...]:
+        """Return steps that follow each other from a time on, in an arm that was taken or was not."""
+        done: list[Step] = []
+        for step in steps:
+            timed = self._timed(step, now, taken=taken)
+            if done and isinstance(done[-1], Await | Branch) and timed.begin > now:
+                done[-1] = replace(done[-1], end=timed.begin)
+            done.append(timed)
+            now = timed.end
+        return tuple(done)
+
+    def _timed(self, step: Step, now: float, *, taken: bool) -> Step:
+        made = self._made(self._count)
+        self._count += 1
+        otherwise = now if taken else now + step.end - step.begin
+        if isinstance(step, Branch):
+            return self._branch(step, now, otherwise)
+        begin, end = (made[0][0], made[-1][1]) if made else (now, otherwise)
+        if isinstance(step, Await) and step.until is not None:
+            return replace(step, begin=begin, end=end, until=begin + step.until - step.begin)
+        return replace(step, begin=begin, end=end)
+
+    def _branch(self, step: Branch, now: float, end: float) -> Branch:
+        """Return a choice that ends with the arm that was taken, or else at a time."""
+        arms: list[tuple[str | None, tuple[Step, ...]]] = []
+        for condition, arm in step.arms:
+            first = self._count
+            is_taken = any(map(self._made, range(first, first + sum(1 for _ in all_steps(arm)))))
+            arms.append((condition, self.steps(arm, now, taken=is_taken)))
+            if is_taken:
+                end = arms[-1][1][-1].end
+        return replace(step, begin=now, end=end, arms=tuple(arms))
+
+    def _made(self, number: int) -> list[tuple[float, float]]:
+        """Return when those of a step's moves that were made began and ended."""
+        return [self._spans[move] for move in self._moves.get(number, ()) if move in self._spans]
 
 
-def _timed(plan: RobotPlan, away: float) -> RobotPlan:
-    """Return the plan of a robot that is away from home for so long; its energy is power times that."""
-    if not plan.busy:
-        return plan
-    energy = None if plan.energy is None else plan.energy * away / plan.busy
-    return replace(plan, busy=away, energy=energy)
+def _timed(plan: RobotPlan, retiming: _Retiming) -> RobotPlan:
+    """Return the plan of a robot with its times; its energy is power times its time away from home."""
+    steps = retiming.steps(plan.steps)
+    busy = sum(_sorties(steps))
+    energy = plan.energy * busy / plan.busy if plan.energy and plan.busy else plan.energy
+    return replace(plan, steps=steps, busy=busy, energy=energy)
+
+
+def _sorties(steps: Iterable[Step]) -> Iterator[float]:
+    """Yield the seconds of each sortie: from when the robot leaves home until it is back."""
+    away: list[Step] = []
+    for step in steps:
+        if isinstance(step, Recharge) and away:
+            yield away[-1].end - away[0].begin
+            away = []
+        elif not isinstance(step, Await | Signal | Recharge):
+            away.append(step)
+    if away:
+        yield away[-1].end - away[0].begin

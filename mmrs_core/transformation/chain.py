@@ -38,11 +38,12 @@ Deed: TypeAlias = UseDevice | SendFeedback | SendSignal
 
 @dataclass(slots=True)
 class DraftMove:
-    """A move to be made, with what is done before and after it."""
+    """A move to be made for a step of the plan, with what is done before and after it."""
 
     spec: MoveSpec
     task: str
     rule: str
+    step: int | None = None
     before: list[Deed] = field(default_factory=list)
     after: list[Deed] = field(default_factory=list)
 
@@ -73,9 +74,11 @@ class Chain:
     Attributes:
         nodes: the moves, in the order in which they were added.
         edges: the transitions between them.
+        step: number of the step of the plan that moves are added for now; None: for none.
     """
 
     def __init__(self) -> None:
+        self.step: int | None = None
         self.nodes = [DraftMove(MoveSpec((BEHAVIOUR, "Start")), "", "launch")]
         self.edges: list[DraftTransition] = []
         self._ends: tuple[OpenEnd, ...] = (OpenEnd(0),)
@@ -83,7 +86,7 @@ class Chain:
 
     def add(self, spec: MoveSpec, task: str, rule: str) -> DraftMove:
         """Add a move after every open end; it is then the only open end."""
-        node, index = DraftMove(spec, task, rule), len(self.nodes)
+        node, index = DraftMove(spec, task, rule, self.step), len(self.nodes)
         self.nodes.append(node)
         for end in self._ends:
             self._connect(end, index)

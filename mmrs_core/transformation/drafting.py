@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import singledispatchmethod
 from itertools import pairwise
@@ -40,8 +40,7 @@ def draft(plan: RobotPlan, scene: Scene, kind: RobotKind, rules: Mapping[str, Ru
         rules: by name; one that has `moves` makes those of its strokes itself.
     """
     drafting = _Drafting(scene.robot(plan.robot), scene, kind, rules)
-    for step in plan.steps:
-        drafting.add(step)
+    drafting.add_all(plan.steps)
     drafting.chain.add(MoveSpec((BEHAVIOUR, "Stop")), "", "recover")
     return drafting.chain
 
@@ -49,7 +48,15 @@ def draft(plan: RobotPlan, scene: Scene, kind: RobotKind, rules: Mapping[str, Ru
 class _Drafting:
     def __init__(self, robot: Robot, scene: Scene, kind: RobotKind, rules: Mapping[str, Rule]) -> None:
         self.chain = Chain()
+        self._count = 0
         self._robot, self._scene, self._kind, self._rules = robot, scene, kind, rules
+
+    def add_all(self, steps: Iterable[Step]) -> None:
+        """Add the moves of steps, which are counted as `all_steps` yields them."""
+        for step in steps:
+            self.chain.step, self._count = self._count, self._count + 1
+            self.add(step)
+            self.chain.step = None
 
     @singledispatchmethod
     def add(self, step: Step) -> None:
@@ -108,8 +115,7 @@ class _Drafting:
             if condition is not None:
                 holds, fails = self.chain.branch(condition)
                 self.chain.resume(holds)
-            for inner in steps:
-                self.add(inner)
+            self.add_all(steps)
             if not steps:
                 self.chain.pause(step.task, "choice")
             ends.extend(self.chain.ends)

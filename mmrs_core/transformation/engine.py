@@ -15,7 +15,6 @@ from mmrs_core.languages import robot as rl
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import (
     AltitudeReference,
-    Branch,
     Frame,
     Name,
     Plan,
@@ -26,7 +25,7 @@ from mmrs_core.scene import (
     Robot,
     Scene,
     Signal,
-    Step,
+    all_steps,
 )
 from mmrs_core.transformation.chain import (
     Chain,
@@ -45,12 +44,16 @@ ORIGIN: Position = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class TraceLink:
-    """A move, the task that it serves (empty: none in particular), and the rule that made it."""
+    """A move, the task that it serves (empty: none in particular), and the rule that made it.
+
+    `step`: number of the step of the robot's plan that it carries out, as `all_steps` counts; None: none.
+    """
 
     robot: str
     move: str
     task: str
     rule: str
+    step: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +61,14 @@ class Trace:
     """What each move of a behaviour is for, robot by robot in the order of the moves."""
 
     links: tuple[TraceLink, ...]
+
+    def moves(self) -> Mapping[tuple[str, int], list[str]]:
+        """Return the moves that carry out each step of a plan, by robot and the step's number."""
+        found: dict[tuple[str, int], list[str]] = {}
+        for link in self.links:
+            if link.step is not None:
+                found.setdefault((link.robot, link.step), []).append(link.move)
+        return found
 
 
 def transform(
@@ -109,7 +120,7 @@ class _Assembly:
             idleRobots=[made[name] for name in self._chains if name in self._idle],
             targets=[*self._coordinates.all, *self._objects.values()],
         )
-        return behaviour, Trace(tuple(_links(robots)))
+        return behaviour, Trace(tuple(_links(robots, self._chains)))
 
     def _robot(self, robot: Robot, chain: Chain) -> bl.Robot:
         fluid = FluidTransitions(robot, self._scene, chain)
@@ -219,25 +230,17 @@ def _slots(plan: Plan) -> dict[str, dict[str, bl.Slot]]:
     """Return a slot for each signal in each robot that receives it; names are unique in the plan."""
     slots: dict[str, dict[str, bl.Slot]] = {}
     for each in plan.robots:
-        for step in _signals(each.steps):
-            for receiver in step.receivers:
-                slots.setdefault(receiver, {})[step.signal] = bl.Slot(name=step.signal)
+        for step in all_steps(each.steps):
+            if isinstance(step, Signal):
+                for receiver in step.receivers:
+                    slots.setdefault(receiver, {})[step.signal] = bl.Slot(name=step.signal)
     return slots
 
 
-def _signals(steps: tuple[Step, ...]) -> Iterator[Signal]:
-    for step in steps:
-        if isinstance(step, Signal):
-            yield step
-        elif isinstance(step, Branch):
-            for _, inner in step.arms:
-                yield from _signals(inner)
-
-
-def _links(robots: list[bl.Robot]) -> Iterator[TraceLink]:
+def _links(robots: list[bl.Robot], chains: Mapping[str, Chain]) -> Iterator[TraceLink]:
     for robot in robots:
-        for move in robot.moves:
-            yield TraceLink(robot.id, move.name or "", move.task or "", move.rule or "")
+        for move, node in zip(robot.moves, chains[robot.id].nodes, strict=True):
+            yield TraceLink(robot.id, move.name or "", node.task, node.rule, node.step)
 
 
 def _pairs(pairs: tuple[tuple[str, str], ...]) -> list[bl.Pair]:

@@ -38,8 +38,10 @@ from mmrs_core.scene import (
     Step,
     Stroke,
     Transit,
+    all_steps,
 )
 
+_DRAWN = (Launch, Transit, Serve, Recover)
 _KINDS: dict[type[Step], str] = {
     Launch: "launch",
     Recover: "recover",
@@ -50,12 +52,24 @@ _KINDS: dict[type[Step], str] = {
 _NORTH = (0.0, 1.0)
 
 
-def picture_of_plan(scene: Scene, plan: Plan, symbols: Mapping[Name, MapSymbol]) -> Picture:
-    """Return what to show of a plan for that (expanded) scene; symbols by metaclass."""
+def picture_of_plan(
+    scene: Scene,
+    plan: Plan,
+    symbols: Mapping[Name, MapSymbol],
+    moves: Mapping[tuple[str, int], Sequence[str]] | None = None,
+) -> Picture:
+    """Return what to show of a plan.
+
+    Args:
+        scene: expanded.
+        plan: of that scene.
+        symbols: how things look, by metaclass.
+        moves: those that carry out each step, by robot and the step's number (`Trace.moves`); None: unknown.
+    """
     return Picture(
         title=scene.name,
         origin=origin_of(scene.frame),
-        robots=tuple(_robot_picture(scene, robot, symbols) for robot in plan.robots),
+        robots=tuple(_robot_picture(scene, robot, symbols, moves or {}) for robot in plan.robots),
         zones=zones_of(scene.areas, {robot.name: robot.clearance for robot in scene.robots}),
         tasks=task_pictures(scene, plan.begins, plan.ends, symbols),
         elements=elements_of(scene.elements, symbols),
@@ -70,9 +84,18 @@ def _under_water(scene: Scene, robot: Robot) -> bool:
     return robot.kinematics is not None and robot.kinematics.ceiling <= scene.frame.surface
 
 
-def _robot_picture(scene: Scene, plan: RobotPlan, symbols: Mapping[Name, MapSymbol]) -> RobotPicture:
+def _robot_picture(
+    scene: Scene,
+    plan: RobotPlan,
+    symbols: Mapping[Name, MapSymbol],
+    moves: Mapping[tuple[str, int], Sequence[str]],
+) -> RobotPicture:
     robot = scene.robot(plan.robot)
-    legs = tuple(legs_of(scene, plan.robot, plan.steps))
+    drawn = (i for i, step in enumerate(all_steps(plan.steps)) if isinstance(step, _DRAWN))
+    legs = tuple(
+        replace(leg, moves=_words(moves.get((plan.robot, number), ())))
+        for leg, number in zip(legs_of(scene, plan.robot, plan.steps), drawn, strict=True)
+    )
     kinematics = robot.kinematics
     return RobotPicture(
         name=robot.name,
@@ -90,7 +113,7 @@ def _robot_picture(scene: Scene, plan: RobotPlan, symbols: Mapping[Name, MapSymb
 
 
 def _summary(plan: RobotPlan) -> tuple[tuple[str, str], ...]:
-    served = tuple(dict.fromkeys(step.task for step in flat(plan.steps) if isinstance(step, Serve)))
+    served = tuple(dict.fromkeys(step.task for step in all_steps(plan.steps) if isinstance(step, Serve)))
     return (
         ("tasks", ", ".join(served) or f"none ({plan.idle})"),
         ("distance", length(plan.length)),
@@ -112,12 +135,12 @@ def _handovers(plan: Plan) -> Iterator[Handover]:
     released = {
         (robot.robot, signal): step
         for robot in plan.robots
-        for step in flat(robot.steps)
+        for step in all_steps(robot.steps)
         if isinstance(step, Await)
         for signal in step.signals
     }
     for robot in plan.robots:
-        for step in flat(robot.steps):
+        for step in all_steps(robot.steps):
             if isinstance(step, Signal):
                 for receiver in step.receivers:
                     waiting = released.get((receiver, step.signal))
@@ -209,17 +232,15 @@ def _when(condition: str | None) -> str:
 
 
 def _longest(branch: Branch) -> int:
+    """Return the number of the arm that the branch ends with."""
     ends = [arm[-1].end if arm else branch.begin for _, arm in branch.arms]
-    return ends.index(max(ends))
+    return min(range(len(ends)), key=lambda arm: abs(ends[arm] - branch.end))
 
 
-def flat(steps: Iterable[Step]) -> Iterator[Step]:
-    """Yield steps and all that are inside of choices, in order."""
-    for step in steps:
-        yield step
-        if isinstance(step, Branch):
-            for _, arm in step.arms:
-                yield from flat(arm)
+def _words(moves: Sequence[str]) -> str:
+    if not moves:
+        return ""
+    return f"move {moves[0]}" if len(moves) == 1 else f"moves {moves[0]} to {moves[-1]}"
 
 
 def footprints(stroke: Stroke, coverage: Coverage) -> Iterator[Ring]:

@@ -16,7 +16,7 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.planning.charges import most_used
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Serve, Step
+from mmrs_core.scene import Serve, Signal, Step, all_steps
 from mmrs_core.simulation.run import simulate
 from mmrs_core.stages import Stages
 
@@ -131,11 +131,28 @@ def test_the_simulated_run_lasts_as_long_as_mmrs_plan_says(example, contribution
     vars(stages).update(made, transformed=(example.behaviour, example.trace))
     run, told = pipeline.simulate(example.program, example.place, contributions), stages.timed
     assert told.makespan == pytest.approx(run.ending.time, rel=0.01)
-    for name, track in run.tracks.items():
+    for robot in told.robots:
+        track = run.tracks.get(robot.robot, ())
         moving = [one.time for one, two in pairwise(track) if one.position != two.position]
-        busy = next(each.busy for each in told.robots if each.robot == name)
-        assert busy <= track[-1].time + 1e-6
-        assert busy >= 0.0 if not moving else busy > 0.0
+        assert robot.busy <= max((sample.time for sample in track), default=0.0) + 1e-6
+        assert robot.busy > 0.0 or not moving
+        assert all(one.end <= two.begin + 1e-6 for one, two in pairwise(robot.steps))
+        idle = (two.begin - one.end for one, two in pairwise(robot.steps) if not isinstance(two, Signal))
+        assert sum(idle, 0.0) < 1.0
+
+
+def test_the_preview_says_when_each_step_is_simulated_to_be_made(taken, contributions):
+    example = taken("carbon-dioxide")
+    stages = Stages(lambda: example.models, contributions)
+    made = {"scene": example.scene, "plan": example.plan, "program": example.program}
+    vars(stages).update(made, transformed=(example.behaviour, example.trace))
+    run = pipeline.simulate(example.program, example.place, contributions)
+    moves = example.trace.moves()
+    ends = {(each.robot, each.move): each.time for each in run.records if each.label in ("end", "act", "ntf")}
+    for robot in stages.timed.robots:
+        for number, step in enumerate(all_steps(robot.steps)):
+            if own := moves.get((robot.robot, number)):
+                assert step.end == ends[robot.robot, own[-1]]
 
 
 def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):

@@ -7,7 +7,6 @@ from lxml import etree
 
 from mmrs_core.pictures.preview.from_plan import picture_of_plan
 from mmrs_core.pictures.preview.map import map_of
-from mmrs_core.pictures.preview.moves import with_moves
 from mmrs_core.pictures.preview.page import page
 from mmrs_core.scene import Branch, Serve
 
@@ -19,8 +18,7 @@ def picture_of(contributions):
     """Return a function: the picture of an example."""
 
     def draw(example):
-        planned = picture_of_plan(example.scene, example.plan, contributions.map_symbols)
-        return with_moves(planned, example.program)
+        return picture_of_plan(example.scene, example.plan, contributions.map_symbols, example.trace.moves())
 
     return draw
 
@@ -31,9 +29,9 @@ def test_every_leg_and_stay_names_its_moves(example, picture_of):
     assert [(name, leg.kind, leg.task, leg.begin) for name, leg in legs if not leg.moves] == []
 
 
-def test_no_move_is_named_by_two_legs_unless_they_stay(example, picture_of):
+def test_no_move_is_named_by_two_legs(example, picture_of):
     for robot in picture_of(example).robots:
-        named = [leg.moves for leg in robot.legs if not leg.stays]
+        named = [leg.moves for leg in robot.legs]
         assert len(named) == len(set(named))
 
 

@@ -296,6 +296,13 @@ def test_every_move_is_traced_to_its_task_and_rule():
     assert len(trace.links) == len(model.robots[0].moves)
 
 
+def test_every_move_is_traced_to_the_step_that_it_carries_out():
+    arms = (("found", (transit(HOME, (1.0, 0.0, 0.0)), serve((1.0, 0.0, 0.0)))), (None, ()))
+    _, trace = behaviour_of(plan_of(transit(HOME, HOME), Branch(0, 0, "t", arms, HOME), serve(HOME, HOME)))
+    steps = {("one", 0): ["goto_001"], ("one", 2): ["goto_002"], ("one", 3): ["holdposition_003"]}
+    assert trace.moves() == {**steps, ("one", 4): ["holdposition_005"]}
+
+
 def test_one_position_makes_one_target():
     model, _ = behaviour_of(plan_of(transit(HOME, (1.0, 0.0, 0.0), HOME, (1.0, 0.0, 0.0))))
     assert len(model.targets) == 2
