@@ -15,7 +15,6 @@ def rally_points_of(
     program: Program,
     types: Mapping[str, RobotType],
     areas: Iterable[Area],
-    spare: float = 0.0,
 ) -> RallyPoints:
     """Return the rally points of a robot, which differ from those of all other robots of the program.
 
@@ -24,7 +23,6 @@ def rally_points_of(
         program: of the whole fleet.
         types: robot types by name, as far as they are known.
         areas: of the context as drawn, emergency areas and areas to keep clear of.
-        spare: metres to keep from the edges of areas in addition to the clearance.
     """
     return rally_points(
         [each.id for each in program.robots].index(robot.id),
@@ -32,7 +30,6 @@ def rally_points_of(
         [area for area in areas if area.concerns(robot.type_name)],
         separation=program.minimum_separation,
         heights=_heights(program),
-        spare=spare,
     )
 
 

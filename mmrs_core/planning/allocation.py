@@ -177,7 +177,7 @@ class _Fields:
         """Return the field of all stops."""
         tasks = [self._team.tasks[stop.job] for stop in self._stops]
         kinds = [self._kinds.index(self._team.kinds[name]) for name in self._team.pilots]
-        limits = np.array([pilot.limit for pilot in self._pilots])
+        limits = np.array([pilot.charge for pilot in self._pilots])
         bounds = (0, 1) if limits.min() < inf else (0,)
         out, back = np.full((2, len(bounds), len(self._pilots), len(self._stops)), inf)
         go = np.full((len(bounds), len(self._kinds), len(self._stops), len(self._stops)), inf, np.float32)
@@ -301,6 +301,8 @@ class _Legs:
             homes, begins, ends = (each * (1.0, 1.0, 0.0) for each in (homes, begins, ends))
         out = self._straight(homes, begins, self._speeds) + up[:, None]
         back = self._straight(ends, homes, [None] * len(homes)).transpose(0, 2, 1) + down[:, None]
+        if len(self._bounds) > 1:
+            back[1] += self._diversions()
         if self._pilots[0].travel.straight:
             return out, back
         near = np.argsort(out[0], axis=0, kind="stable")[:_ROUTED].T
@@ -311,6 +313,16 @@ class _Legs:
                 end = self._ends[stop]
                 back[:, robot, stop] = (pilot.exit_seconds(end), pilot.exit_longest(end))[: len(self._bounds)]
         return out, back
+
+    def _diversions(self) -> Matrix:
+        """Return (robots, stops) how much longer than landing at home a diversion from above it takes."""
+        more: Matrix = np.zeros((len(self._pilots), len(self._ends)))
+        heights = np.array([end[2] for end in self._ends])
+        for row, pilot in zip(more, self._pilots, strict=True):
+            for height in np.unique(heights).tolist() if pilot.diversions is not None else ():
+                first = next(iter(pilot.travel.above_home([height])), None)
+                row[heights == height] = inf if first is None else pilot.diversion_more(first)
+        return more
 
     def _homes(self) -> list[Position]:
         return [pilot.robot.home for pilot in self._pilots]

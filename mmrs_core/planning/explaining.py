@@ -15,7 +15,7 @@ from math import dist, inf
 from mmrs_core.planning.charges import most_used
 from mmrs_core.planning.critical_path import Link, critical_path
 from mmrs_core.planning.jobs import Job, jobs_of
-from mmrs_core.planning.materials import kept_of_charge
+from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import distance_to_keep
@@ -292,15 +292,15 @@ class _Explaining:
         """Return which sortie is nearest to its limit, in words; empty where there is no limit."""
         most = most_used(self._plan, self._team.pilots)
         used = [
-            (most[each.robot] / pilot.limit, each.robot)
+            (most[each.robot] / allowed, each.robot)
             for each in self._plan.robots
-            if each.steps and (pilot := self._team.pilots[each.robot]).limit < inf
+            if each.steps and (allowed := allowed_by_charge(self._team.pilots[each.robot])) < inf
         ]
         if not used:
             return ""
         share, robot = max(used)
         pilot = self._team.pilots[robot]
-        part = f"{most[robot]:.0f} of the {pilot.limit:.0f} s of a charge{kept_of_charge(pilot)}"
+        part = f"{most[robot]:.0f} of the {allowed_by_charge(pilot):.0f} s of a charge{kept_of_charge(pilot)}"
         return f"'{robot}' uses up to {part} ({100.0 * share:.0f} %)"
 
     def _deadline(self) -> str:

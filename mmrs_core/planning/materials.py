@@ -200,7 +200,7 @@ def faults(work: Work, pilot: Pilot) -> Iterator[str]:
     if not pilot.kinematics.cruise > 0:
         yield "its cruise speed is zero"
         return
-    if pilot.limit <= 0.0 and pilot.diversions is not None:
+    if pilot.stuck and pilot.diversions is not None:
         yield _no_diversion(pilot, pilot.diversions)
     yield from _height_faults(work.strokes, pilot)
     for stroke in work.strokes:
@@ -250,9 +250,10 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
     if short[worst] == inf:
         yield _why_unreachable(material, pilot, worst)
     elif short[worst] > 1e-9:
+        allowed = allowed_by_charge(pilot)
         yield (
-            f"{_words(material, worst)} takes up to {ceil(pilot.limit + short[worst])} s there and back; one"
-            f" charge allows {floor(pilot.limit)} s{kept_of_charge(pilot)}: {ceil(short[worst])} s short"
+            f"{_words(material, worst)} takes up to {ceil(allowed + short[worst])} s there and back; one"
+            f" charge allows {floor(allowed)} s{kept_of_charge(pilot)}: {ceil(short[worst])} s short"
         )
 
 
@@ -267,9 +268,15 @@ def _no_diversion(pilot: Pilot, diversions: Diversions) -> str:
     )
 
 
+def allowed_by_charge(pilot: Pilot) -> float:
+    """Return the seconds of a charge less those kept for a diversion from above home, at the best height."""
+    kept = pilot.diversions.from_home if pilot.diversions is not None and pilot.homebound else 0.0
+    return pilot.charge - kept
+
+
 def kept_of_charge(pilot: Pilot) -> str:
-    """Return what is kept of a charge for a diversion; empty where nothing is."""
-    kept = pilot.charge - pilot.limit
+    """Return what is kept of a charge for a diversion, in words; empty where nothing is."""
+    kept = pilot.charge - allowed_by_charge(pilot)
     return f" beside {ceil(kept)} s kept to reach an emergency area from home" if kept > 0.5 else ""
 
 
@@ -291,7 +298,7 @@ def shortages(material: Material, pilot: Pilot) -> list[float]:
     found = []
     for index in range(len(material)):
         try:
-            found.append(_longest_sortie(material, pilot, index) - pilot.limit)
+            found.append(_longest_sortie(material, pilot, index) - pilot.charge)
         except UnreachableError:
             found.append(inf)
     return found

@@ -13,10 +13,10 @@ from typing import Protocol
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.bounds import least_makespan
-from mmrs_core.planning.charges import most_used
+from mmrs_core.planning.charges import short_of_charge
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
-from mmrs_core.planning.materials import kept_of_charge
+from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.remedies import (
     counted,
     for_all_charges,
@@ -103,8 +103,8 @@ def _leaving_enough(team: Team, seed: int, effort: Effort | None) -> Plan | None
     trial = None if effort is None else effort.trial()
     with suppress(InfeasibleError):
         found = plan(replace(team.scene, policies=policies), seed=seed, effort=trial)
-        used, away = most_used(found, team.pilots), {each.robot for each in found.robots if each.steps}
-        if all(used[name] <= team.pilots[name].limit for name in away & diverting.keys()):
+        short = short_of_charge(found, team.pilots)
+        if not short & diverting.keys():
             if effort is not None and trial is not None:
                 effort.stopped = trial.stopped
             return found
@@ -278,7 +278,7 @@ def _plan_of(
 def _with_remedies(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
     """Yield what makes tasks impossible, with what would do where robots cannot reach an emergency area."""
     short = [*team.shortfalls()]
-    stuck = any(pilot.limit <= 0.0 for pilot in team.pilots.values())
+    stuck = any(pilot.stuck for pilot in team.pilots.values())
     remedies = or_else([*for_diversions(team, jobs)]) if short and stuck else ""
     yield from (f"{each}{remedies}" for each in short)
 
@@ -355,7 +355,7 @@ def _general(team: Team, jobs: Sequence[Job], job: Job) -> str:
     laid_out = [each for each in materials if each is not None]
     whole = min(each.seconds(0, len(each) - 1) for each in laid_out)
     charges = "; ".join(
-        f"{name}: {team.pilots[name].limit:.0f} s a charge{kept_of_charge(team.pilots[name])}"
+        f"{name}: {allowed_by_charge(team.pilots[name]):.0f} s a charge{kept_of_charge(team.pilots[name])}"
         + (", cannot recharge" if team.pilots[name].kinematics.recharge is None else "")
         for name in team.able(task.name)
     )
@@ -389,5 +389,5 @@ def _short_of_charges(team: Team, task: str, whole: float) -> str:
     pilots = [team.pilots[name] for name in team.able(task)]
     if any(pilot.kinematics.recharge is not None for pilot in pilots):
         return ""
-    short = whole - sum(pilot.limit for pilot in pilots)
+    short = whole - sum(map(allowed_by_charge, pilots))
     return f": at least {short:.0f} s short" if short > 0.5 else ""

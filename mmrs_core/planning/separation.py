@@ -10,7 +10,7 @@ from math import dist, inf
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.charges import most_used
+from mmrs_core.planning.charges import short_of_charge
 from mmrs_core.planning.delaying import delayed
 from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
 from mmrs_core.planning.schedule import Decisions
@@ -271,11 +271,9 @@ class Traffic:
     def overdrawn(self, team: Team, before: Plan) -> list[str]:
         """Return the robots that wait longer than before and then take more than a charge allows."""
         old = {each.robot: each.steps for each in before.robots}
-        used = most_used(self.plan, team.pilots)
+        short = short_of_charge(self.plan, team.pilots)
         return [
-            each.robot
-            for each in self.plan.robots
-            if each.steps != old[each.robot] and used[each.robot] > team.pilots[each.robot].limit + 1e-6
+            each.robot for each in self.plan.robots if each.steps != old[each.robot] and each.robot in short
         ]
 
     def later_starts(self) -> dict[str, float]:

@@ -29,8 +29,7 @@ class Pilot:
     Attributes:
         paces: by (bound, parts in one go): when each begins and ends, see `paced`.
         charge: seconds that a charge allows.
-        limit: likewise, of a robot that always goes home less what a diversion from above home takes more
-            than landing there. Not positive: it cannot set out.
+        stuck: whether it cannot set out, for no charge suffices for a diversion from above home.
         fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
     """
 
@@ -51,8 +50,7 @@ class Pilot:
         by_energy = self.kinematics.energy / power if power > 0 else inf
         self.charge = min(self.kinematics.endurance, by_energy)
         self.diversions = diversions if self.charge < inf else None
-        self._to_return = self.charge - (self.diversions.from_home if self.diversions is not None else 0.0)
-        self.limit = self._to_return if self.homebound or self._to_return <= 0.0 else self.charge
+        self.stuck = self.diversions is not None and self.diversions.from_home >= self.charge
         self._noticing = noticing(self.kinematics.timing)
         launches = self.kinematics.launches
         self.fresh = 0.0 if launches else self._noticing
@@ -78,10 +76,7 @@ class Pilot:
 
     def exit_longest(self, position: Position) -> float:
         """Return how long that takes at most, or a diversion that it must be able to make; inf: it cannot."""
-        ending = _longest(_remembered(self._exits, position, self.exit_route)) + self.stopping
-        if self.homebound or self.diversions is None:
-            return ending
-        return max(ending, self.diversions.seconds(position))
+        return self._ending_longest(_remembered(self._exits, position, self.exit_route))
 
     def end_seconds(self, position: Position) -> float:
         """Return the seconds from a place to the robot's end: down where it is, if it need not return."""
@@ -91,8 +86,19 @@ class Pilot:
         return min(self.exit_seconds(position), _seconds(descent))
 
     def home_longest(self, position: Position) -> float:
-        """Return the seconds that the route home from a place takes at most; inf where there is none."""
-        return _longest(_remembered(self._homes, position, self.travel.go_home))
+        """Return how long going home takes at most, or a diversion from above it; inf: there is no route."""
+        return self._ending_longest(_remembered(self._homes, position, self.travel.go_home), stopping=0.0)
+
+    def _ending_longest(self, route: Route | None, stopping: float | None = None) -> float:
+        """Return how long a sortie's last route takes at most, or a diversion from where it comes down."""
+        if route is None:
+            return inf
+        stopping = self.stopping if stopping is None else stopping
+        return route.longest + max(stopping, self.diversion_more(route.points[-1]))
+
+    def diversion_more(self, end: Position) -> float:
+        """Return the seconds by which a diversion takes longer than to come down at the end of a path."""
+        return 0.0 if self.diversions is None else self.diversions.more_than_landing(end)
 
     def exit_route(self, position: Position) -> Route:
         """Return the route on which the last sortie ends from a place: home, or down where that is allowed.
@@ -109,11 +115,11 @@ class Pilot:
 
     def affords(self, state: State, seconds: float, end: Position) -> bool:
         """Return whether `seconds` at most that end at a place leave enough to end the last sortie there."""
-        return state.used + seconds + self.exit_longest(end) <= self.limit + _SAME
+        return state.used + seconds + self.exit_longest(end) <= self.charge + _SAME
 
     def affords_home(self, state: State, seconds: float, end: Position) -> bool:
         """Return whether `seconds` at most that end at a place leave enough to return home."""
-        return state.used + seconds + self.home_longest(end) <= self._to_return + _SAME
+        return state.used + seconds + self.home_longest(end) <= self.charge + _SAME
 
     def reach(
         self, state: State, approach: ApproachRoute, need: float, ready: Ready, task: str
@@ -139,7 +145,7 @@ class Pilot:
         return min(found, key=lambda each: (each.time, each.used), default=None)
 
     def _with_enough(self, state: State | None, need: float) -> State | None:
-        return state if state is not None and state.used + need <= self.limit + _SAME else None
+        return state if state is not None and state.used + need <= self.charge + _SAME else None
 
     def rested(self, state: State, task: str) -> State | None:
         """Return the state at home with full batteries; None if the robot is fresh or cannot."""
@@ -149,7 +155,8 @@ class Pilot:
             home = self.home(state, task)
         except UnreachableError:
             return None
-        return self._recharged(home, task) if home.used <= self._to_return + _SAME else None
+        ending = self.home_longest(state.at) if state.away else 0.0
+        return self._recharged(home, task) if state.used + ending <= self.charge + _SAME else None
 
     def _reach_now(self, state: State, approach: ApproachRoute, ready: Ready, task: str) -> State | None:
         try:
@@ -283,7 +290,7 @@ class Pilot:
             route = self.travel.come_down(state.at)
         except UnreachableError:
             return None
-        return route if state.used + route.longest + self.stopping <= self.limit + _SAME else None
+        return route if state.used + self._ending_longest(route) <= self.charge + _SAME else None
 
     def _ended(self, state: State, route: Route, task: str) -> State:
         end, trail = state.time + route.seconds, state.trail

@@ -354,7 +354,7 @@ def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:
             works: object = shared.sorts[name]
         else:
             works = tuple(id(shared.get((task, name))) for task in tasks)
-        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works, pilot.limit > 0.0)
+        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works, pilot.stuck)
         kinds[name] = first.setdefault(key, name)
     return kinds
 

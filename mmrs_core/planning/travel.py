@@ -253,17 +253,18 @@ class Travel:
         return self._route(points, seconds, length_of(points) + down.length, down.height)
 
     def above_home(self, heights: Iterable[float]) -> list[Position]:
-        """Return from where the robot comes down at home, by the heights at which it comes there."""
+        """Return from where the robot may come down at home, by the heights of tasks."""
         if not self.kinematics.launches:
             return [self.robot.home]
-        levels = dict.fromkeys(self._within(height) for height in heights)
+        levels = dict.fromkeys(each for height in heights for each in self._launch_heights(height))
         return [above for above, reason in map(self._above_home, levels) if not reason]
 
     def landing_longest(self, start: Position) -> float:
-        """Return the seconds from above home to the ground at most; 0 for robots that do not launch."""
+        """Return the seconds straight down to the ground at most; 0 for robots that do not launch."""
         if not self.kinematics.launches:
             return 0.0
-        return self._upright(self.kinematics.landing(start[2] - self.robot.home[2])).longest
+        drop = start[2] - ground_height(start, self.robot.home)
+        return self._upright(self.kinematics.landing(drop)).longest
 
     def _timed(self, points: tuple[Position, ...]) -> Route:
         return self._route(points, self._gone(points), length_of(points))
@@ -307,7 +308,7 @@ class Travel:
             whole = MoveSeconds(*(a + b for a, b in zip(route.bounds, out, strict=True)))
             return self._route(route.points, whole, route.length)
         best: Route | str = ""
-        for height in self._launch_heights(goal):
+        for height in self._launch_heights(goal[2]):
             above, reason = self._above_home(height)
             route = reason or self._routed(above, goal, level=height)
             if isinstance(route, str):
@@ -322,7 +323,7 @@ class Travel:
         if not self.kinematics.launches:
             return self._routed(start, self.robot.home)
         best: Route | str = ""
-        for height in self._launch_heights(start):
+        for height in self._launch_heights(start[2]):
             above, reason = self._above_home(height)
             route = reason or self._routed(start, above, level=height)
             if isinstance(route, str):
@@ -333,9 +334,10 @@ class Travel:
             return self._route(route.points, seconds, route.length + drop, height)
         return best
 
-    def _launch_heights(self, other: Position) -> list[float]:
-        first = self._within(other[2]) if self._altitude is None else self._altitude
-        rest = [self._within(height) for height in (other[2], other[2] / 2, other[2] / 4, -inf, inf)]
+    def _launch_heights(self, other: float) -> list[float]:
+        """Return the heights above home to try for a route to or from another height, best first."""
+        first = self._within(other) if self._altitude is None else self._altitude
+        rest = [self._within(height) for height in (other, other / 2, other / 4, -inf, inf)]
         return list(dict.fromkeys(height for height in (first, *rest) if height < inf))
 
     def _above_home(self, height: float) -> tuple[Position, str]:

@@ -12,7 +12,8 @@ from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import AltitudeReference, Part, Point, Ring
 from mmrs_core.scene.robots import Robot
 from mmrs_core.scene.works import Work
-from mmrs_runtime.policies import Policy
+from mmrs_runtime.faults import BATTERY_LOW
+from mmrs_runtime.policies import LAND, Policy, in_precedence
 
 
 class AreaUse(Enum):
@@ -211,6 +212,25 @@ class Scene:
     def robot(self, name: str) -> Robot:
         """Return the robot of that name."""
         return next(robot for robot in self.robots if robot.name == name)
+
+    def stated_policies(self, robot: Robot) -> tuple[Policy, ...]:
+        """Return the policies of the robot's behaviour, which go before those of its type and kind.
+
+        They are the mission's. A robot that is not to come home does not go there for want of energy, unless
+        mission or type say so: it lands where it is.
+        """
+        events = {policy.event for policy in (*self.policies, *robot.type.policies)}
+        if robot.return_home or BATTERY_LOW in events:
+            return self.policies
+        return (*self.policies, Policy(BATTERY_LOW, LAND))
+
+    def responses(self, robot: Robot) -> dict[str, str]:
+        """Return what a robot of the expanded scene does, by event."""
+        stated = self.stated_policies(robot)
+        found: dict[str, str] = {}
+        for policy in (*in_precedence((), stated, robot.type.policies), *robot.policies):
+            found.setdefault(policy.event, policy.response)
+        return found
 
     def kept_from(self, robot: Robot) -> Iterator[Area]:
         """Yield the areas that a robot keeps away from: forbidden ones, obstacles, ground it cannot pass."""

@@ -36,7 +36,6 @@ def rally_points(
     *,
     separation: float | None,
     heights: Iterable[float],
-    spare: float = 0.0,
 ) -> RallyPoints:
     """Return the rally points of one robot of a team, which differ from those of all others.
 
@@ -49,9 +48,8 @@ def rally_points(
         areas: that concern the robot, as drawn: emergency areas, and areas to keep clear of.
         separation: least distance of two robots, metres.
         heights: that the team's paths lead to, metres above the origin.
-        spare: metres to keep from the edges of areas in addition to the clearance.
     """
-    widest, count = max(clearances) + spare, len(clearances)
+    widest, count = max(clearances), len(clearances)
     apart = max(2.0 * widest, separation or 0.0)
     levels = [0.0, *heights]
     low, high = min(levels), max(levels)
@@ -66,8 +64,7 @@ def rally_points(
     found = [found_in(area, widest, count) for area in own]
     if points := tuple(places[number] for places in found if number < len(places)):
         return RallyPoints(points)
-    keep = clearances[number] + spare
-    alone = {area.name: found_in(area, keep, 1) for area in own}
+    alone = {area.name: found_in(area, clearances[number], 1) for area in own}
     names = ", ".join(f"'{name}'" for name, places in alone.items() if places)
     words = f"in an emergency it may land where others do: there is no room for all robots in {names}"
     shared = words if names and count > 1 else ""

@@ -338,6 +338,8 @@ class Robot:
         clearance: half the robot's diagonal plus the mission's position error, metres, and once it is
             expanded the room that its kinematics want; the safety distance of each area comes on top.
         kinematics: None until the scene is expanded.
+        policies: of its robot kind, where mission and robot type say nothing about an event; none until the
+            scene is expanded.
     """
 
     name: str
@@ -349,4 +351,5 @@ class Robot:
     clearance: float
     kind: str = ""
     kinematics: Kinematics | None = None
+    policies: tuple[Policy, ...] = ()
     place: Place = Place()

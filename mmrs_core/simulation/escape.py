@@ -84,9 +84,9 @@ class Escapes:
     @cached_property
     def _rally_points(self) -> tuple[tuple[float, float], ...]:
         """Return a point of the robot's own inside every emergency area that is large enough."""
-        given, spare = self._given, self._kinematics.turning_radius
+        given = self._given
         types = {**given.types, given.type.name: given.type}
-        return rally_points_of(given.robot, given.program, types, given.areas, spare).points
+        return rally_points_of(given.robot, given.program, types, given.areas).points
 
     @cached_property
     def _space(self) -> Space:

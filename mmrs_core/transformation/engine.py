@@ -134,7 +134,7 @@ class _Assembly:
             slots=list(self._slots.get(robot.name, {}).values()),
             moves=moves,
             moveTransitions=[self._transition(edge, robot, moves, fluid) for edge in chain.edges],
-            policies=[_policy(policy) for policy in _policies(robot, self._scene)],
+            policies=[_policy(policy) for policy in self._scene.stated_policies(robot)],
         )
 
     def _move(self, node: DraftMove, index: int) -> bl.Move:
@@ -245,17 +245,6 @@ def _links(robots: list[bl.Robot], chains: Mapping[str, Chain]) -> Iterator[Trac
 
 def _pairs(pairs: tuple[tuple[str, str], ...]) -> list[bl.Pair]:
     return [bl.Pair(key=key, value=value) for key, value in pairs]
-
-
-def _policies(robot: Robot, scene: Scene) -> tuple[Policy, ...]:
-    """Return the mission's policies; a robot that is not to come home does not go there for want of energy.
-
-    That is, it comes down where it is, unless the mission or its type declares something else.
-    """
-    events = {policy.event for policy in (*scene.policies, *robot.type.policies)}
-    if robot.return_home or "BATTERY_LOW" in events:
-        return scene.policies
-    return (*scene.policies, Policy("BATTERY_LOW", "LAND"))
 
 
 def _policy(policy: Policy) -> rl.Policy:

@@ -32,6 +32,7 @@ from mmrs_core.scene import (
     Value,
     Work,
 )
+from mmrs_runtime.policies import in_precedence
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
@@ -122,7 +123,8 @@ def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]
     except InfeasibleError as error:
         raise InfeasibleError(f"robot '{robot.name}': {error}") from error
     clearance = robot.clearance + kinematics.room
-    return replace(robot, kind=kind.name, kinematics=kinematics, clearance=clearance)
+    policies = in_precedence(kind=kind.policies)
+    return replace(robot, kind=kind.name, kinematics=kinematics, clearance=clearance, policies=policies)
 
 
 def _expand_task(

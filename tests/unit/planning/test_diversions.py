@@ -76,6 +76,30 @@ def test_the_policy_of_a_robot_type_counts_and_the_missions_goes_before_it():
     sound(flight(1e5, team=(typed,), policies=(Policy("LINK_LOST", "RETURN"),)))
 
 
+def test_the_policy_of_a_robot_kind_counts_and_those_of_type_and_mission_go_before_it():
+    (one,) = flight(1e5).robots
+    kept = replace(one, policies=ESCAPES)
+    with pytest.raises(InfeasibleError):
+        plan(flight(1e5, team=(kept,), policies=()))
+    home = (Policy("LINK_LOST", "RETURN"),)
+    sound(flight(1e5, team=(kept,), policies=home))
+    sound(flight(1e5, team=(replace(kept, type=replace(kept.type, policies=home)),), policies=()))
+
+
+def test_a_robot_that_is_not_to_return_has_landing_for_a_low_battery_before_its_kinds_response():
+    (one,) = flight(1e5).robots
+    low = replace(one, policies=(Policy("BATTERY_LOW", "EMERGENCY_AREA"),))
+    with pytest.raises(InfeasibleError):
+        plan(flight(1e5, team=(low,), policies=()))
+    sound(flight(1e5, team=(replace(low, return_home=False),), policies=()))
+
+
+def test_a_robot_that_cannot_come_home_at_the_transit_altitude_diverts_from_the_height_at_which_it_does():
+    roof = box("roof", -20.0, -20.0, 20.0, 20.0, low=60.0, high=90.0)
+    low = sound(flight(100.0, areas=(roof,), transit_altitude=75.0))
+    assert low.makespan == sound(flight(100.0, areas=(roof,), transit_altitude=75.0, policies=())).makespan
+
+
 def test_a_refusal_tells_the_policy_the_seconds_and_what_would_do():
     whole = flight(5000.0)
     words = reason(whole)

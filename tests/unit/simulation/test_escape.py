@@ -8,6 +8,7 @@ import shapely
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Kinematics, Part, RobotType
+from mmrs_core.scene.rally_points import rally_points
 from mmrs_core.simulation.escape import Escapes
 
 HOME = (0.0, 0.0, 0.0)
@@ -18,11 +19,20 @@ PITCH = Area("pitch", AreaUse.EMERGENCY, ((120.0, 20.0), (140.0, 20.0), (140.0, 
 TINY = Area("tiny", AreaUse.EMERGENCY, ((101.0, 1.0), (102.0, 1.0), (102.0, 2.0), (101.0, 2.0)))
 
 
-def escapes_among(*areas, floor=-inf):
+def escapes_among(*areas, floor=-inf, turning_radius=0.0):
     kind = RobotType("t", (), (), 2.0, None, (Capability(0, None, (0, 10)),), (), {}, Part((), {}))
     robot = RobotProgram("r", "t", "NORMAL", 0.0, HOME, (), (), {}, 0, 0)
     program = Program("p", Frame("EPSG:4326", None, None), (robot,))
-    kinematics = Kinematics(cruise=5, slowest=0, fastest=10, climb=3, descent=3, floor=floor, launches=True)
+    kinematics = Kinematics(
+        cruise=5,
+        slowest=0,
+        fastest=10,
+        climb=3,
+        descent=3,
+        floor=floor,
+        launches=True,
+        turning_radius=turning_radius,
+    )
     return Escapes(VehicleInput(program, robot, kind, {}, {}, {}, {}, (), areas), kinematics, HOME)
 
 
@@ -48,6 +58,11 @@ def test_the_nearest_emergency_area_that_is_large_enough_is_taken():
     inside = shapely.Polygon(PITCH.shell).boundary.distance(shapely.Point(goal[:2]))
     assert inside >= 2.0
     assert goal[2] == 0.0
+
+
+def test_a_robot_that_turns_in_a_curve_goes_where_the_check_expects_it():
+    goal = escapes_among(PITCH, turning_radius=9.0).clear("EMERGENCY_AREA", HERE)[-1]
+    assert rally_points(0, [2.0], [PITCH], separation=None, heights=[20.0]).points == (goal[:2],)
 
 
 def test_the_emergency_area_is_taken_that_is_reached_first_not_the_one_behind_a_wall():

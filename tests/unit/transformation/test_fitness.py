@@ -1,7 +1,10 @@
-"""Robots are left out of what their radio does not reach and their type does not stand."""
+"""Robots of an expanded scene have the policies of their kind, and are left out of what they cannot do."""
 
-from mmrs_core.scene import Capability, Frame, Part, Robot, RobotType, Scene, Stroke, Work
-from mmrs_core.transformation.expand import out_of_reach, unfit
+from dataclasses import replace
+
+from mmrs_core.scene import Capability, Frame, Part, Policy, Robot, RobotType, Scene, Stroke, Work
+from mmrs_core.transformation.expand import expand, out_of_reach, unfit
+from mmrs_core.transformation.kinds import PLAIN_ROBOT
 
 
 def robot_with(**attributes):
@@ -33,3 +36,14 @@ def test_a_work_beyond_the_radio_is_out_of_reach():
     assert out_of_reach(work_at((30.0, 40.0, 0.0)), near) is None
     assert out_of_reach(work_at((30.0, 41.0, 0.0)), near) == "would be 51 m from home, its radio reaches 50 m"
     assert out_of_reach(work_at((3e4, 0.0, 0.0)), robot_with()) is None
+
+
+def test_robots_of_an_expanded_scene_have_the_policies_of_their_kind_behind_those_of_mission_and_type():
+    kind = replace(
+        PLAIN_ROBOT, metaclass=("urn:t", "Cart"), policies={"LINK_LOST": "EMERGENCY_AREA", "OBSTACLE": "HOLD"}
+    )
+    robot = robot_with()
+    robot = replace(robot, type=replace(robot.type, metaclasses=(kind.metaclass,)))
+    whole = replace(scene_at(), robots=(robot,), policies=(Policy("OBSTACLE", "LAND"),))
+    found = expand(whole, {}, {kind.metaclass: kind}, {})
+    assert found.responses(found.robots[0]) == {"OBSTACLE": "LAND", "LINK_LOST": "EMERGENCY_AREA"}
