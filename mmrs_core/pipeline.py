@@ -140,11 +140,14 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     return planned(scene, seed=seed, effort=effort)
 
 
-def explain(scene: Scene, plan: Plan) -> PlanExplanation:
-    """Return why a plan is as it is: what alternatives would cost, and which limits bind."""
+def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanation:
+    """Return why a plan is as it is: what alternatives would cost, and which limits bind.
+
+    `timed`: the plan with the times to tell; None: the planner's.
+    """
     from mmrs_core.planning.explaining import explain as explained
 
-    return explained(scene, plan)
+    return explained(scene, plan, timed)
 
 
 def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[bl.Behaviour, Trace]:

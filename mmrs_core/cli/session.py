@@ -142,9 +142,9 @@ class CommandStages(Stages):
     @cached_property
     def explanation(self) -> PlanExplanation:
         """Return why the plan is as it is."""
-        scene, plan = self.scene, self.plan
+        scene, plan, timed = self.scene, self.plan, self.timed
         with progress("explaining the plan"):
-            return explain(scene, plan)
+            return explain(scene, plan, timed)
 
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:

@@ -110,14 +110,20 @@ class PlanExplanation:
     idle: Mapping[str, tuple[str, Alternative] | None]
 
 
-def explain(scene: Scene, plan: Plan) -> PlanExplanation:
-    """Return why the plan of an expanded scene is as it is."""
-    return _Explaining(scene, plan).all()
+def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanation:
+    """Return why the plan of an expanded scene is as it is.
+
+    Args:
+        scene: expanded.
+        plan: of that scene.
+        timed: the plan with the times to tell; None: the planner's.
+    """
+    return _Explaining(scene, plan, timed or plan).all()
 
 
 class _Explaining:
-    def __init__(self, scene: Scene, plan: Plan) -> None:
-        self._scene, self._plan, self._jobs = scene, plan, jobs_of(scene)
+    def __init__(self, scene: Scene, plan: Plan, timed: Plan) -> None:
+        self._scene, self._plan, self._timed, self._jobs = scene, plan, timed, jobs_of(scene)
         self._groups = _groups(plan)
         self._decisions = Decisions(_order(plan, self._jobs), self._groups)
         for self._team in teams_to_try(Team(scene)):
@@ -129,15 +135,15 @@ class _Explaining:
         self._stops = dict[str, list[Position]]()
 
     def all(self) -> PlanExplanation:
-        chain = critical_path(self._plan)
+        chain = critical_path(self._timed)
         critical = [link.task for link in chain]
         jobs = [job for job in self._jobs if job.name in self._groups]
         jobs.sort(key=lambda job: job.name not in critical)
         tasks = sorted((self._task(job) for job in jobs), key=lambda each: (each.begin, each.task))
-        ends = [(each.robot, each.steps[-1].end) for each in self._plan.robots if each.steps]
+        ends = [(each.robot, each.steps[-1].end) for each in self._timed.robots if each.steps]
         return PlanExplanation(
-            self._plan.makespan,
-            self._plan.lower_bound,
+            self._timed.makespan,
+            self._timed.lower_bound,
             tuple(sorted(ends, key=lambda each: -each[1])),
             chain,
             tuple(sorted(self._limits(), key=lambda each: -each.cost)),
@@ -146,7 +152,7 @@ class _Explaining:
         )
 
     def _task(self, job: Job) -> TaskExplanation:
-        mine, begin, end = self._groups[job.name], self._plan.begins[job.name], self._end_of(job)
+        mine, begin, end = self._groups[job.name], self._timed.begins[job.name], self._end_of(job)
         if self._left <= 0 or not isinstance(self._found, Schedule):
             return TaskExplanation(job.name, mine, begin, end, (), {}, tried=False)
         able = [name for name in self._team.pilots if self._able(job, name)]
@@ -161,7 +167,7 @@ class _Explaining:
         return TaskExplanation(job.name, mine, begin, end, tuple(tried), unable)
 
     def _end_of(self, job: Job) -> float:
-        return max(self._plan.ends.get(name, 0.0) for name in (job.name, *job.tasks()))
+        return max(self._timed.ends.get(name, 0.0) for name in (job.name, *job.tasks()))
 
     def _able(self, job: Job, robot: str) -> bool:
         return all(self._team.forwards(task, robot) is not None for task in job.tasks())

@@ -91,6 +91,14 @@ class _Retiming:
         self._spans = {move: span for (name, move), span in spans.items() if name == robot}
         self._count = 0
 
+    def all(self, steps: Sequence[Step]) -> tuple[Step, ...]:
+        """Return the steps of the robot; the last one ends when the robot has stopped."""
+        timed = self.steps(steps)
+        if not timed:
+            return ()
+        stopped = max(end for _, end in self._spans.values())
+        return (*timed[:-1], replace(timed[-1], end=max(timed[-1].end, stopped)))
+
     def steps(self, steps: Iterable[Step], now: float = 0.0, *, taken: bool = True) -> tuple[Step, ...]:
         """Return steps that follow each other from a time on, in an arm that was taken or was not."""
         done: list[Step] = []
@@ -131,7 +139,7 @@ class _Retiming:
 
 def _timed(plan: RobotPlan, retiming: _Retiming) -> RobotPlan:
     """Return the plan of a robot with its times; its energy is power times its time away from home."""
-    steps = retiming.steps(plan.steps)
+    steps = retiming.all(plan.steps)
     busy = sum(_sorties(steps))
     energy = plan.energy * busy / plan.busy if plan.energy and plan.busy else plan.energy
     return replace(plan, steps=steps, busy=busy, energy=energy)

@@ -83,6 +83,11 @@ def test_a_choice_ends_with_the_arm_that_was_taken_and_the_other_lasts_as_planne
     assert spans(plan) == [(0.0, 12.0), (12.0, 30.0), dip, look, (30.0, 40.0)]
 
 
+def test_the_last_step_ends_when_the_robot_has_stopped():
+    plan = timed([go(0.0, 10.0)], ["m1"], ("end", "m1", 12.0), ("take", "m1", 12.0), ("end", "stop", 12.5))
+    assert (spans(plan), plan.makespan) == ([(0.0, 12.5)], 12.5)
+
+
 def test_time_at_home_is_not_away():
     plan = timed(
         [go(0.0, 10.0), Recharge(10.0, 60.0, ""), Await(60.0, 60.0, "", ("go",)), go(60.0, 70.0)],
