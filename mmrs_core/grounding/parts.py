@@ -167,10 +167,11 @@ def corridor_of(corridor: Element, ground: Ground, name: str = "") -> Corridor:
     """
     low, high = heights_of(corridor)
     types = texts(corridor, "robotTypes")
-    line = (position_of(each, ground)[:2] for each in children(corridor, "line"))
+    line = tuple(position_of(each, ground)[:2] for each in children(corridor, "line"))
+    kept = tuple(place for i, place in enumerate(line) if i == 0 or place != line[i - 1])
     return Corridor(
         name=name or label_of(corridor) or path_of(corridor).lstrip("/"),
-        line=tuple(line),
+        line=kept if len(kept) > 1 else line,
         width=number(corridor, "width") or 0.0,
         low=low,
         high=high,

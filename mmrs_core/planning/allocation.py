@@ -301,9 +301,11 @@ class _Legs:
             homes, begins, ends = (each * (1.0, 1.0, 0.0) for each in (homes, begins, ends))
         out = self._straight(homes, begins, self._speeds) + up[:, None]
         back = self._straight(ends, homes, [None] * len(homes)).transpose(0, 2, 1) + down[:, None]
+        self._through_gates(out, back)
         if len(self._bounds) > 1:
             back[1] += self._diversions()
-        if self._pilots[0].travel.straight:
+        travel = self._pilots[0].travel
+        if travel.straight and not travel.entries and not travel.exits:
             return out, back
         near = np.argsort(out[0], axis=0, kind="stable")[:_ROUTED].T
         for stop, robots in enumerate(near.tolist()):
@@ -313,6 +315,26 @@ class _Legs:
                 end = self._ends[stop]
                 back[:, robot, stop] = (pilot.exit_seconds(end), pilot.exit_longest(end))[: len(self._bounds)]
         return out, back
+
+    def _through_gates(self, out: Matrix, back: Matrix) -> None:
+        """Replace seconds of straight routes by those through corridors, straight before and after them."""
+        begins, ends = _places(self._begins), _places(self._ends)
+        for robot, (travel, home) in enumerate((each.travel, each.homebound) for each in self._pilots):
+            for corridors, places, found in ((travel.entries, begins, out), (travel.exits, ends, back)):
+                outwards = corridors is travel.entries
+                if not corridors or not (outwards or home):
+                    continue
+                gates = travel.gates(corridors, np.unique(places[:, 2]).tolist())
+                if not gates:
+                    continue
+                inner = _places([*gates])
+                legs = (
+                    self._straight(inner, places, self._speeds)
+                    if outwards
+                    else self._straight(places, inner, [None] * len(inner)).transpose(0, 2, 1)
+                )
+                first = np.array([self._of(each) for each in gates.values()]).T
+                found[:, robot] = (legs + first[:, :, None]).min(axis=1)
 
     def _diversions(self) -> Matrix:
         """Return (robots, stops) how much longer than landing at home a diversion from above it takes."""

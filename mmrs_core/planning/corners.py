@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from math import acos, dist, hypot, pi
+from math import acos, dist, hypot, inf, pi
 
 import shapely
 
-from mmrs_core.scene import Area, Kinematics, Position, Robot
+from mmrs_core.scene import Area, Corridor, Kinematics, Position, Robot
 
 LEAST_CUT = 2.0
 """Metres by which a corner may be cut at least: autopilots count a place as passed within a radius, and may
@@ -18,22 +18,40 @@ STRAIGHT = pi / 180
 """Turns smaller than this, in radians, cut no corner."""
 
 
+_ON = 1e-6
+"""Metres within which a corner is on a line."""
+
+
 class Corners:
-    """The corners that a robot may pass among some areas.
+    """The corners that a robot may pass among some areas, and in corridors.
 
     A robot that goes round a corner without a stop cuts it by up to v² / 2a, or by the radius within which
     its autopilot counts the corner as passed. One that needs room to turn passes where its narrowest curve
     fits into the corner, which it then cuts by less than the radius that it keeps everywhere.
     """
 
-    def __init__(self, robot: Robot, areas: Iterable[Area]) -> None:
-        """Make it for a robot that keeps away from areas."""
-        self._robot, self._areas = robot, list(areas)
+    def __init__(self, robot: Robot, areas: Iterable[Area], corridors: Iterable[Corridor] = ()) -> None:
+        """Make it for a robot that keeps away from areas, and goes along the lines of corridors."""
+        self._robot, self._areas, self._corridors = robot, list(areas), list(corridors)
 
     @cached_property
     def _shapes(self) -> list[tuple[shapely.Polygon, float]]:
         own = self._robot.clearance
         return [(shapely.Polygon(area.shell), area.safety_distance + own) for area in self._areas]
+
+    @cached_property
+    def _lines(self) -> list[tuple[shapely.LineString, Corridor]]:
+        return [(shapely.LineString(each.line), each) for each in self._corridors]
+
+    def _spare(self, corner: Position) -> float:
+        """Return the metres by which a robot may be off a corner on the line of a corridor; else inf."""
+        point, own = shapely.Point(corner[:2]), self._robot.clearance
+        rooms = (
+            min(each.width / 2.0, corner[2] - each.low, each.high - corner[2])
+            for line, each in self._lines
+            if line.distance(point) <= _ON
+        )
+        return min(rooms, default=inf) - own
 
     def may_pass(self, start: Position | None, corner: Position, end: Position, speed: float | None) -> bool:
         """Return whether the robot need not stop at a corner.
@@ -52,6 +70,8 @@ class Corners:
         if kinematics.turning_radius > 0.0:
             return start is not None and _fits(kinematics, start, corner, end)
         cut = max(LEAST_CUT, kinematics.timing.cut(speed or kinematics.cruise))
+        if cut > self._spare(corner):
+            return False
         point = shapely.Point(corner[:2])
         return all(shape.distance(point) >= keep + cut for shape, keep in self._shapes)
 

@@ -13,6 +13,7 @@ from itertools import pairwise
 from math import dist, inf
 
 from mmrs_core.planning.charges import most_used
+from mmrs_core.planning.corridors import gone_through
 from mmrs_core.planning.critical_path import Link, critical_path
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
@@ -268,6 +269,8 @@ class _Explaining:
             yield Limit("deadlines", 0.0, margin)
         if any(task.wanted is not None and task.name in self._groups for task in scene.tasks):
             yield self._numbers()
+        if used := self._corridors():
+            yield Limit("corridors", self._sooner(replace(scene, corridors=()), self._jobs), used)
         if margin := self._charge():
             yield Limit("charge", self._without_charge(), margin)
 
@@ -308,6 +311,20 @@ class _Explaining:
         pilot = self._team.pilots[robot]
         part = f"{most[robot]:.0f} of the {allowed_by_charge(pilot):.0f} s of a charge{kept_of_charge(pilot)}"
         return f"'{robot}' uses up to {part} ({100.0 * share:.0f} %)"
+
+    def _corridors(self) -> str:
+        """Return which robots come in and go out through which corridors, in words; empty: through none."""
+        users = dict[tuple[str, str], list[str]]()
+        for each in self._plan.robots:
+            through = gone_through(each.steps, self._scene.corridors)
+            for direction, names in through.items():
+                for name in names:
+                    users.setdefault((name, direction), []).append(f"'{each.robot}'")
+        verbs = {"in": ("comes", "come"), "out": ("goes", "go")}
+        return "; ".join(
+            f"{', '.join(robots)} {verbs[direction][len(robots) > 1]} {direction} through '{name}'"
+            for (name, direction), robots in users.items()
+        )
 
     def _deadline(self) -> str:
         spare = [

@@ -67,7 +67,7 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     if (found := _leaving_enough(team, seed, effort)) is not None:
         return found
     if short := [*_with_remedies(team, jobs), *_shared_choices(scene, jobs)]:
-        able = [job for job in jobs if all(map(team.able, job.tasks()))]
+        able = [*_alone([job for job in jobs if all(map(team.able, job.tasks()))])]
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
     teams, effort = _Remembered(teams_to_try(team)), effort or Effort()
     effort.least = least_makespan(team, jobs)
@@ -88,6 +88,12 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return replace(found, lower_bound=effort.least)
+
+
+def _alone(jobs: Sequence[Job]) -> Iterator[Job]:
+    """Yield jobs that wait for none but each other."""
+    names = {job.name for job in jobs}
+    yield from (replace(job, after=tuple(each for each in job.after if each in names)) for job in jobs)
 
 
 def _leaving_enough(team: Team, seed: int, effort: Effort | None) -> Plan | None:

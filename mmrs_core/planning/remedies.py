@@ -11,7 +11,7 @@ from mmrs_core.planning.materials import shortages
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.scene import Area, AreaUse, Robot, Scene
+from mmrs_core.scene import Area, AreaUse, Corridor, Robot, Scene
 from mmrs_runtime.policies import RETURN, Policy
 
 _MOST_PAIRS = 1000
@@ -62,7 +62,7 @@ def too_long(team: Team, jobs: Sequence[Job]) -> list[str]:
             reasons.append(f"task '{task}' can be done by no robot ({team.why_not(task)})")
             continue
         if short == inf:
-            remedy = or_else([*_passages(team, task, why)])
+            remedy = or_else([*_passages(team, task, why), *_corridors(team, task, why)])
             reasons.append(f"task '{task}' can be reached by no robot ({why}){remedy}")
             continue
         remedies = [*_homes(team, jobs, task, name, index)]
@@ -121,6 +121,35 @@ def _passages(team: Team, task: str, why: str) -> Iterator[str]:
         opened = [f"'{each.name}'" for each in blocking if _fits(team, task, robot, without=each)]
         if opened:
             yield f"for '{name}' a passage through {' or '.join(opened)}"
+
+
+def _corridors(team: Team, task: str, why: str) -> Iterator[str]:
+    """Yield how corridors that keep robots from a task would let them through, each alone."""
+    for name in team.able(task):
+        robot = team.scene.robot(name)
+        for each in team.scene.corridors_of(robot):
+            if f"corridor '{each.name}'" in why:
+                for words, other in _opened(team.scene, each, robot):
+                    if _fits(team, task, robot, corridors=other):
+                        yield f"for '{name}' {words}"
+                        break
+
+
+def _opened(scene: Scene, corridor: Corridor, robot: Robot) -> Iterator[tuple[str, tuple[Corridor, ...]]]:
+    """Yield changes of a corridor that may let a robot through, in words, with the corridors of the scene."""
+    wide = ceil(200.0 * robot.clearance - 1e-9) / 100.0
+    changes = {
+        f"a width of {wide:g} m of corridor '{corridor.name}'": replace(corridor, width=wide),
+        f"no minHeight of corridor '{corridor.name}'": replace(corridor, low=-inf),
+        f"no maxHeight of corridor '{corridor.name}'": replace(corridor, high=inf),
+    }
+    for words, changed in changes.items():
+        if changed != corridor:
+            yield words, tuple(changed if each is corridor else each for each in scene.corridors)
+    types = {each.type.name for each in scene.robots} - {robot.type.name}
+    others = replace(corridor, types=frozenset(types if corridor.types is None else corridor.types & types))
+    words = f"robotTypes of corridor '{corridor.name}' without '{robot.type.name}'"
+    yield words, tuple(others if each is corridor else each for each in scene.corridors)
 
 
 def _homes(team: Team, jobs: Sequence[Job], task: str, name: str, index: int) -> Iterator[str]:
@@ -232,14 +261,26 @@ def _worst(team: Team, task: str, robot: str) -> tuple[float, int]:
     return max(((each, i) for i, each in enumerate(short)), default=(inf, 0))
 
 
-def _fits(team: Team, task: str, robot: Robot, without: Area | None = None) -> bool:
-    """Return whether a robot has sorties for each portion of a task, finely divided; without an area."""
+def _fits(
+    team: Team,
+    task: str,
+    robot: Robot,
+    without: Area | None = None,
+    corridors: tuple[Corridor, ...] | None = None,
+) -> bool:
+    """Return whether a robot has sorties for each portion of a task, finely divided.
+
+    Args:
+        without: an area that is taken away.
+        corridors: instead of the scene's.
+    """
     works = {(task, robot.name): team.scene.works[task, robot.name]}
     scene = replace(
         team.scene,
         robots=(robot,),
         tasks=(team.tasks[task],),
         areas=tuple(each for each in team.scene.areas if each is not without),
+        corridors=team.scene.corridors if corridors is None else corridors,
         dependencies=(),
         works=works,
         refusals={},

@@ -227,7 +227,7 @@ class Pilot:
             trail = (trail, Launch(time, up, task, self.robot.home, route.height))
             time = up
         end = state.time + route.seconds
-        if len(route.points) > 1 and route.points[0] != route.points[-1]:
+        if any(point != route.points[0] for point in route.points):
             trail = (trail, Transit(time, end, task, route.points, speed))
         return state.after(route, goal, trail)._replace(sorties=state.sorties + 1)
 
@@ -301,7 +301,7 @@ class Pilot:
             ground = self.robot.home[2] if len(route.points) > 1 else route.height
             down = self.kinematics.landing(last[2] - ground)
             at = (last[0], last[1], ground)
-        if len(route.points) > 1 and route.points[0] != last:
+        if any(point != last for point in route.points):
             trail = (trail, Transit(state.time, end - down, task, route.points))
         if self.kinematics.launches:
             trail = (trail, Recover(end - down, end, task, last, at[2]))

@@ -89,7 +89,11 @@ class Team:
                 self.spaces.of(robot),
                 aloft.get(robot.name, scene.transit_altitude),
                 fluid=fluid,
-                uploading=Corners(robot, scene.kept_from(robot)) if uploads else None,
+                corridors=scene.corridors_of(robot),
+                areas=scene.kept_from(robot),
+                uploading=Corners(robot, scene.kept_from(robot), scene.corridors_of(robot))
+                if uploads
+                else None,
             )
             for robot in scene.robots
         }

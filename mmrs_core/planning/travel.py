@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist, inf
@@ -10,9 +11,10 @@ from math import dist, inf
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.corners import Corners
+from mmrs_core.planning.corridors import Corridors, Passage
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.strokes import length_of
-from mmrs_core.scene import Area, AreaUse, Kinematics, Point, Position, Robot, Scene
+from mmrs_core.scene import Area, AreaUse, Corridor, Kinematics, Point, Position, Robot, Scene
 from mmrs_core.scene.timing import MoveSeconds, Rates, bounded
 
 _SPECK = 0.01
@@ -101,6 +103,8 @@ class Travel:
         transit_altitude: float | None,
         *,
         fluid: bool = True,
+        corridors: Sequence[Corridor] = (),
+        areas: Iterable[Area] = (),
         uploading: Corners | None = None,
     ) -> None:
         """Make it for a robot.
@@ -110,11 +114,18 @@ class Travel:
             space: its space.
             transit_altitude: height at which it goes between home and tasks, where it may and can.
             fluid: whether it may pass without a stop where nothing is done.
+            corridors: that are for it.
+            areas: that it keeps away from.
             uploading: corners that it passes on missions which may be uploaded; None: none are.
         """
         self.robot, self.space, self.fluid = robot, space, fluid
         self.kinematics = kinematics_of(robot)
         self.uploading = None if self.kinematics.mission is None else uploading
+        kept_from = tuple(areas)
+        self.entries, self.exits = (
+            Corridors(corridors, direction, robot, self.kinematics, space, kept_from)
+            for direction in ("in", "out")
+        )
         aloft = transit_altitude if self.kinematics.launches else None
         self._altitude = None if aloft is None else self._within(aloft)
         self._leaving: dict[Position, Route | str] = {}
@@ -252,11 +263,30 @@ class Travel:
         seconds = MoveSeconds(*(a + b for a, b in zip(self._gone(points), down.bounds, strict=True)))
         return self._route(points, seconds, length_of(points) + down.length, down.height)
 
+    def gates(self, corridors: Corridors, heights: Iterable[float]) -> dict[Position, MoveSeconds]:
+        """Return how long it takes from home to where corridors end, or from where exits begin to home.
+
+        Args:
+            corridors: its entries or exits.
+            heights: of the places that it goes to, or comes from.
+        """
+        ways = [
+            each for height in dict.fromkeys(heights) for each in corridors.passages(self._within(height))
+        ]
+        found: dict[Position, MoveSeconds] = {}
+        for each in ways:
+            inner = each.points[-1] if corridors is self.entries else each.points[0]
+            with suppress(UnreachableError):
+                found[inner] = (self.leave if corridors is self.entries else self.go_home)(inner).bounds
+        return found
+
     def above_home(self, heights: Iterable[float]) -> list[Position]:
         """Return from where the robot may come down at home, by the heights of tasks."""
         if not self.kinematics.launches:
             return [self.robot.home]
-        levels = dict.fromkeys(each for height in heights for each in self._launch_heights(height))
+        wanted = [each for height in heights for each in self._launch_heights(height)]
+        wanted += [self._within(each.height) for level in wanted for each in self.exits.passages(level)]
+        levels = dict.fromkeys(wanted)
         return [above for above, reason in map(self._above_home, levels) if not reason]
 
     def landing_longest(self, start: Position) -> float:
@@ -301,38 +331,78 @@ class Travel:
 
     def _outward(self, goal: Position) -> Route | str:
         if not self.kinematics.launches:
-            route = self._routed(self.robot.home, goal)
+            route = self._through(self.entries, self.robot.home, goal, goal[2])
             if isinstance(route, str):
                 return route
             out = self.kinematics.setting_out()
             whole = MoveSeconds(*(a + b for a, b in zip(route.bounds, out, strict=True)))
             return self._route(route.points, whole, route.length)
-        best: Route | str = ""
-        for height in self._launch_heights(goal[2]):
-            above, reason = self._above_home(height)
-            route = reason or self._routed(above, goal, level=height)
-            if isinstance(route, str):
-                best = best or route
-                continue
-            climb = height - self.robot.home[2]
-            seconds = self._upright(self.kinematics.launching(climb), route)
-            return self._route(route.points, seconds, route.length + climb, height)
-        return best
+        return self._upwards(goal, self.entries)
 
     def _inward(self, start: Position) -> Route | str:
         if not self.kinematics.launches:
-            return self._routed(start, self.robot.home)
+            return self._through(self.exits, start, self.robot.home, start[2])
+        return self._upwards(start, self.exits)
+
+    def _upwards(self, other: Position, corridors: Corridors) -> Route | str:
+        """Return the route between the air above home and a place: from there, or back; or why there is none.
+
+        The first of several launch heights will do; where it leads through a corridor, that of the corridor
+        as well: the quicker one is taken.
+        """
         best: Route | str = ""
-        for height in self._launch_heights(start[2]):
-            above, reason = self._above_home(height)
-            route = reason or self._routed(start, above, level=height)
-            if isinstance(route, str):
-                best = best or route
-                continue
-            drop = height - self.robot.home[2]
-            seconds = self._upright(self.kinematics.landing(drop), route)
-            return self._route(route.points, seconds, route.length + drop, height)
+        for height in self._launch_heights(other[2]):
+            passing = (self._within(each.height) for each in corridors.passages(height))
+            routes = [self._from_above(each, other, corridors) for each in dict.fromkeys((height, *passing))]
+            found = [route for route in routes if isinstance(route, Route)]
+            if found:
+                return min(found, key=lambda route: route.seconds)
+            best = best or routes[0]
         return best
+
+    def _from_above(self, height: float, other: Position, corridors: Corridors) -> Route | str:
+        outwards = corridors is self.entries
+        above, reason = self._above_home(height)
+        start, goal = (above, other) if outwards else (other, above)
+        route = reason or self._through(corridors, start, goal, height)
+        if isinstance(route, str):
+            return route
+        rise = height - self.robot.home[2]
+        upright = self.kinematics.launching(rise) if outwards else self.kinematics.landing(rise)
+        return self._route(route.points, self._upright(upright, route), route.length + rise, height)
+
+    def _through(self, corridors: Corridors, start: Position, goal: Position, level: float) -> Route | str:
+        """Return the quickest route that leads through one of some corridors; or why there is none.
+
+        Args:
+            corridors: none: any route will do.
+            start, goal: of the route.
+            level: at which it leads where the robot may choose, and nearest to which it leads in a corridor.
+        """
+        raised = level if self.kinematics.launches else None
+        if not corridors:
+            return self._routed(start, goal, level=raised)
+        why = corridors.why_not(level)
+        best: Route | None = None
+        for each in corridors.passages(level):
+            route = self._by(each, start, goal, raised)
+            if isinstance(route, str):
+                why = f"{why}; {route}" if why else route
+            elif best is None or route.seconds < best.seconds:
+                best = route
+        return best or why
+
+    def _by(self, passage: Passage, start: Position, goal: Position, level: float | None) -> Route | str:
+        """Return the route through one corridor."""
+        there = self._routed(start, passage.points[0], level)
+        on = self._routed(passage.points[-1], goal, level)
+        for part in (there, on):
+            if isinstance(part, str):
+                return f"{part} (corridor '{passage.corridor}')"
+        assert isinstance(there, Route)
+        assert isinstance(on, Route)
+        points = (*there.points, *passage.points, *on.points)
+        return self._timed(tuple(each for i, each in enumerate(points) if i == 0 or each != points[i - 1]))
 
     def _launch_heights(self, other: float) -> list[float]:
         """Return the heights above home to try for a route to or from another height, best first."""

@@ -61,7 +61,8 @@ class Corridor:
 
     Attributes:
         name: as in the context, or made from its place in the list.
-        line: (east, north) of its centre line in the direction of entry, two places or more.
+        line: (east, north) of its centre line in the direction of entry: two places or more, each different
+            from the one before.
         width: metres between its two sides.
         low: height of its lower side above the origin, metres; -inf where unlimited.
         high: height of its upper side; inf where unlimited.
@@ -239,3 +240,7 @@ class Scene:
             for area in self.areas
             if area.use is not AreaUse.EMERGENCY and area.concerns(robot.type.name)
         )
+
+    def corridors_of(self, robot: Robot) -> tuple[Corridor, ...]:
+        """Return the corridors that are for a robot."""
+        return tuple(each for each in self.corridors if each.concerns(robot.type.name))

@@ -176,7 +176,51 @@ def _robot_faults(scene, robot, plan):
         walk.faults.append(f"ends at {walk.here}, not at home")
     if robot.kinematics.launches and walk.away:
         walk.faults.append("never lands")
-    return walk.faults
+    return [*walk.faults, *_corridor_faults(scene, robot, plan.steps)]
+
+
+def _corridor_faults(scene, robot, steps):
+    """Yield each sortie that does not lead in and out through a corridor, where there are some."""
+    mine = scene.corridors_of(robot)
+    into = [each for each in mine if each.use != "EXIT"]
+    out = [each for each in mine if each.use != "ENTRY"]
+    path, working = [robot.home], False
+    for step in steps:
+        match step:
+            case Launch():
+                path = [step.at, (*step.at[:2], step.up)]
+                working = False
+            case Transit() | Recover():
+                path += step.route if isinstance(step, Transit) else ((*step.at[:2], step.up),)
+            case Serve() | Branch():
+                if not working and into and not any(leads_through(path, each, robot) for each in into):
+                    yield f"comes to '{step.task}' through no corridor"
+                working, path = True, [step.exit if isinstance(step, Branch) else step.stroke.points[-1]]
+        at_home = dist(path[-1], robot.home) <= NEAR and not isinstance(step, Serve | Branch | Launch)
+        if working and at_home:
+            if out and not any(leads_through(path, each, robot, out=True) for each in out):
+                yield "goes home through no corridor"
+            path, working = [robot.home], False
+
+
+def leads_through(path, corridor, robot, *, out=False):
+    """Return whether a path, sampled every half metre, goes along a corridor within its sides, end to end."""
+    line = shapely.LineString(corridor.line[::-1] if out else corridor.line)
+    spare = corridor.width / 2.0 - robot.clearance + 1e-6
+    samples = np.concatenate([np.linspace(a, b, int(2 * dist(a, b)) + 2) for a, b in pairwise(path)])
+    points = shapely.points(samples[:, :2])
+    low, high = corridor.low + robot.clearance - 1e-6, corridor.high - robot.clearance + 1e-6
+    inside = (shapely.distance(points, line) <= spare) & (low <= samples[:, 2]) & (samples[:, 2] <= high)
+    along = shapely.line_locate_point(line, points)
+    began = False
+    first, last = (
+        shapely.distance(points, shapely.Point(line.coords[end])) <= spare + 0.5 for end in (0, -1)
+    )
+    for within, begins, ends, place in zip(inside, first, last, along, strict=True):
+        began = within and (began or begins)
+        if began and ends and place >= line.length - spare - 0.5:
+            return True
+    return False
 
 
 def keeps_clear(scene, robot, points, faults, step=0.5):
@@ -322,4 +366,4 @@ def _order_faults(scene, plan):
     return faults
 
 
-__all__ = ["Recharge", "Recover", "Transit", "complaints", "flat", "keeps_clear"]
+__all__ = ["Recharge", "Recover", "Transit", "complaints", "flat", "keeps_clear", "leads_through"]
