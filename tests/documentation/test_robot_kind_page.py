@@ -29,7 +29,7 @@ def test_a_kind_made_by_the_steps_of_its_page_passes_the_test_on_it(tmp_path):
     (tmp_path / name).write_text(test, encoding="utf-8")
     (tmp_path / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
     paths = os.pathsep.join((str(tmp_path), *filter(None, sys.path)))
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", tmp_path, name]
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "same_examples", "--rootdir", tmp_path, name]
     done = subprocess.run(
         command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": paths}, capture_output=True, text=True
     )

@@ -11,6 +11,7 @@ from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input, two_drones
+from type_checks import mypy
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
@@ -151,9 +152,8 @@ def test_generated_files_are_formatted_as_people_format_theirs(tmp_path):
 @pytest.mark.thorough
 def test_generated_files_pass_a_strict_type_check(tmp_path):
     write(render(MAVLINK_PYTHON, target_input(named(("alpha", "beta")))), tmp_path)
-    options = ["--strict", "--ignore-missing-imports", "--python-version", "3.11", "--cache-dir", "cache"]
-    command = [sys.executable, "-m", "mypy", *options, "."]
-    found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    options = ("--strict", "--ignore-missing-imports", "--python-version", "3.11")
+    found = mypy(*options, ".", folder=tmp_path)
     assert found.returncode == 0, found.stdout
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import ast
 import runpy
-import subprocess
-import sys
 
 import pytest
+from type_checks import mypy
 
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.element import metaclass_of
@@ -65,8 +64,7 @@ def features_in(stub):
 
 def strictly(folder, *names):
     """Return what mypy has to say about modules in a folder."""
-    command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--hide-error-context"]
-    done = subprocess.run([*command, *names], cwd=folder, capture_output=True, text=True, check=False)
+    done = mypy("--strict", "--no-error-summary", "--hide-error-context", *names, folder=folder)
     assert done.stderr == ""
     return done.stdout
 

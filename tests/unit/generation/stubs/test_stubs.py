@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ast
 import builtins
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from type_checks import mypy
 
 from mmrs_core.errors import MmrsError, PluginError
 from mmrs_core.generation.stubs.view import docstring
@@ -36,9 +35,7 @@ def type_checked(folder):
     """Return a function that has mypy check files beside the stubs, and gives its complaints."""
 
     def check(*files):
-        command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--hide-error-context"]
-        named = [str(file) for file in files]
-        run = subprocess.run([*command, *named], cwd=folder, capture_output=True, text=True, check=False)
+        run = mypy("--strict", "--no-error-summary", "--hide-error-context", *files, folder=folder)
         assert run.stderr == ""
         return run.stdout.splitlines()
 
