@@ -58,7 +58,23 @@ class _Environment(Environment):
 
 
 def environment_of(target: Target, overrides: Overrides | None = None) -> Environment:
-    """Return the environment in which a target's templates are rendered, or those that take their place."""
+    """Return the environment in which a target's templates are rendered, or those that take their place.
+
+    Without overrides it is the same one each time, so that a template is compiled once.
+    """
+    if overrides is not None:
+        return _environment(target, overrides)
+    kept = _KEPT.get(target.templates)
+    if kept is None or kept[0] != target.filters:
+        kept = _KEPT[target.templates] = target.filters, _environment(target)
+    return kept[1]
+
+
+_KEPT: dict[Path, tuple[Mapping[str, Callable[[object], str]], Environment]] = {}
+"""For each folder of templates, the filters of the target that rendered them last, and its environment."""
+
+
+def _environment(target: Target, overrides: Overrides | None = None) -> Environment:
     environment = environment_in(target.templates, target.filters)
     common = FileSystemLoader(shipped("codegen_templates") / PYTHON)
     own = ChoiceLoader([FileSystemLoader(target.templates), common])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from jinja2 import nodes
 from jinja2.ext import Extension
@@ -45,7 +45,8 @@ class Serves(Extension):
     def _marked(self, steps: TracedStep | Sequence[TracedStep], caller: Callable[[], str]) -> str:
         every: list[TracedStep] = [steps] if isinstance(steps, TracedStep) else list(_several(steps))
         # a semicolon ends the mark, so that none may stand within it
-        words = json.dumps([asdict(step) for step in every]).replace(";", "\\u003b")
+        said = [(step.step, step.robot, step.move, step.task, step.rule) for step in every]
+        words = json.dumps(said).replace(";", "\\u003b")
         return f"{MARK}{words};{caller()}{MARK};"
 
 
@@ -98,7 +99,7 @@ class _Reader:
         if token[1]:
             self.pass_over(MARK)
         elif token[2]:
-            self._open.append(([TracedStep(**each) for each in json.loads(token[2])], self._line))
+            self._open.append(([TracedStep(*each) for each in json.loads(token[2])], self._line))
         else:
             steps, first = self._open.pop()
             last = max(first, self._line - self._fresh)

@@ -67,6 +67,7 @@ class Sample:
         if kind.sample is None:
             raise InternalError(f"robot kind '{kind.name}' has no sample type")
         self._contributions = contributions
+        self._kinds = {name: replace(each, policies={}) for name, each in contributions.robot_kinds.items()}
         height = HEIGHTS[kind.medium]
         self.name = kind.name.replace("_", " ")
         self.type: RobotType = kind.sample
@@ -93,10 +94,8 @@ class Sample:
 
     def given(self, *robots: RobotProgram, type: RobotType | None = None) -> TargetInput:
         """Return what a target gets of these robots; of this type, or of the sample's own."""
-        made = type or self.type
-        known = self._contributions
-        kinds = {name: replace(kind, policies={}) for name, kind in known.robot_kinds.items()}
-        return TargetInput(Program("mission", EARTH, robots), {made.name: made}, kinds, known.move_kinds)
+        made, program = type or self.type, Program("mission", EARTH, robots)
+        return TargetInput(program, {made.name: made}, self._kinds, self._contributions.move_kinds)
 
     def robot(self, id: str, moves: Iterable[Move], **transitions: Transition) -> RobotProgram:
         """Return a robot that makes these moves one after the other, between Start and Stop.

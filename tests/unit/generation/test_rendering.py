@@ -37,6 +37,20 @@ def test_a_template_is_rendered_with_its_view(target):
     assert (files[0].path, files[0].content) == ("hello.txt", b'hello "survey"\n')
 
 
+def test_a_template_that_was_changed_is_rendered_as_it_is_now(target):
+    render(target, target_input(two_drones()))
+    (target.templates / "hello.jinja").write_text("good evening {{ who | py }}\n", "utf-8")
+    assert render(target, target_input(two_drones()))[0].content == b'good evening "survey"\n'
+
+
+def test_targets_with_the_same_templates_have_their_own_filters(target):
+    (target.templates / "loud.jinja").write_text("{{ 'hey' | shout }}\n", "utf-8")
+    loud = with_file(target, "a.txt", "loud.jinja")
+    quiet = replace(loud, filters={"shout": lambda value: str(value).lower()})
+    made = [render(each, target_input(two_drones()))[0].content for each in (loud, quiet, loud)]
+    assert made == [b"HEY\n", b"hey\n", b"HEY\n"]
+
+
 def test_a_template_without_the_ending_is_copied(target):
     files = render(with_file(target, "a.txt", "copied.txt"), target_input(two_drones()))
     assert files[0].content == b"{{ as it is }}"

@@ -88,7 +88,7 @@ def test_no_value_forges_a_mark(value):
 
 @given(st.text(alphabet="x\n", max_size=20), st.text(alphabet="y\n", max_size=20))
 def test_lines_are_those_of_the_text_without_marks(before, body):
-    step = json.dumps([{"step": "s", "robot": "r", "move": "m", "task": "", "rule": ""}])
+    step = json.dumps([("s", "r", "m", "", "")])
     text, (served,) = taken_out(f"{before}{MARK}{step};{body}{MARK};end")
     first = before.count("\n") + 1
     assert text == before + body + "end"
