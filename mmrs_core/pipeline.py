@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.planning.effort import Effort
     from mmrs_core.planning.explaining import PlanExplanation
-    from mmrs_core.scene import Area, Part, Plan, RobotType, Scene
+    from mmrs_core.scene import Area, Corridor, Part, Plan, RobotType, Scene
     from mmrs_core.simulation.run import SimulatedRun
     from mmrs_core.transformation.engine import Trace
     from mmrs_runtime.records.steps import StepRecord
@@ -54,6 +54,7 @@ class BehaviourContext:
         environment: weather and water, by attribute name.
         elements: context elements of plug-ins.
         tasks: of the mission, by name; empty where no mission is given.
+        corridors: of the context as drawn.
     """
 
     types: Mapping[str, RobotType]
@@ -61,6 +62,7 @@ class BehaviourContext:
     environment: Mapping[str, float] | None = None
     elements: tuple[Part, ...] = ()
     tasks: Mapping[str, Part] = field(default_factory=dict)
+    corridors: tuple[Corridor, ...] = ()
 
 
 def read_models(
@@ -167,7 +169,7 @@ def place_of_scene(scene: Scene) -> BehaviourContext:
     """Return what the behaviour of a scene is checked against."""
     types = {robot.type.name: robot.type for robot in scene.robots}
     tasks = {task.name: task.part for task in scene.tasks}
-    return BehaviourContext(types, scene.areas, scene.environment, scene.elements, tasks)
+    return BehaviourContext(types, scene.areas, scene.environment, scene.elements, tasks, scene.corridors)
 
 
 def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program:
@@ -190,6 +192,7 @@ def verify(program: Program, place: BehaviourContext, contributions: Contributio
         areas=place.areas,
         environment=place.environment or {},
         elements=place.elements,
+        corridors=place.corridors,
         tasks=place.tasks,
         rally_points=rally_points_by_policy(
             program, place.types, contributions.robot_kinds, place.areas or ()

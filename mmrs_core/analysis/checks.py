@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mmrs_core.analysis.clearance import CLEARANCE
+from mmrs_core.analysis.corridors import CORRIDORS
 from mmrs_core.analysis.diversions import DIVERSION
 from mmrs_core.analysis.endurance import ENDURANCE, ENERGY, RECHARGE_CHECK
 from mmrs_core.analysis.envelope import ALTITUDE, DEPTH, TEMPERATURE, WIND
@@ -18,6 +19,7 @@ CHECKS: tuple[Check, ...] = (
     STRUCTURE,
     SYNCHRONISATION,
     CLEARANCE,
+    CORRIDORS,
     ALTITUDE,
     DEPTH,
     RANGE,

@@ -87,6 +87,10 @@ class Action:
         return NOTIFY in self.metaclasses
 
 
+ASIDE = frozenset({"launch", "transit", "recover", "wait", "recharge", "choice", "notify"})
+"""Rules of moves that only lead to a task."""
+
+
 @dataclass(frozen=True, slots=True)
 class Move:
     """An atomic movement.
@@ -123,6 +127,11 @@ class Move:
     def kind(self) -> str:
         """Return the name of the most specific metaclass."""
         return self.metaclasses[0][1]
+
+    @property
+    def works(self) -> bool:
+        """Return whether it is work on its task, and not only transit."""
+        return bool(self.task) and self.rule not in ASIDE
 
     def action(self, detail: str) -> Action:
         """Return the action that a step names: ``pre:0`` is the first before the movement, or ``post:0``."""

@@ -227,7 +227,14 @@ def _valid(session: Session, files: BehaviourFiles) -> tuple[Program, bl.Behavio
 
 
 def _place(behaviour: bl.Behaviour, files: BehaviourFiles, session: Session) -> BehaviourContext:
-    from mmrs_core.grounding.scenes import areas_of, environment_of, ground_of, part_of, robot_type_of
+    from mmrs_core.grounding.scenes import (
+        areas_of,
+        corridors_of,
+        environment_of,
+        ground_of,
+        part_of,
+        robot_type_of,
+    )
 
     types = {name: robot_type_of(root) for name, root in files.types.items()}
     context, known = files.context, session.contributions
@@ -239,4 +246,10 @@ def _place(behaviour: bl.Behaviour, files: BehaviourFiles, session: Session) -> 
     elements = tuple(part_of(element, ground) for element in children(context, "elements"))
     drawn = areas_of(context, ground)
     barred = barriers(elements, drawn, types.values(), known.robot_kinds, known.element_kinds)
-    return BehaviourContext(types, (*drawn, *barred), environment_of(context), elements)
+    return BehaviourContext(
+        types,
+        (*drawn, *barred),
+        environment_of(context),
+        elements,
+        corridors=corridors_of(context, ground),
+    )

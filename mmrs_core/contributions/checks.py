@@ -12,7 +12,7 @@ from mmrs_core.diagnostics import Place
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.scene import Area, Name, Part, Point, RobotType
+    from mmrs_core.scene import Area, Corridor, Name, Part, Point, RobotType
 
 
 class Status(Enum):
@@ -79,6 +79,7 @@ class CheckInput:
         areas: of the context as drawn, and those that its elements make; None where no context was given.
         environment: by attribute name; absent where not known.
         elements: context elements of plug-ins; empty where no context was given.
+        corridors: of the context as drawn; empty where no context was given.
         tasks: of the mission, by name as moves have it; empty where no mission was given.
         rally_points: (east, north) of the places where each robot would land that a policy may lead to an
             emergency area, metres; a robot that none may lead there is missing.
@@ -92,6 +93,7 @@ class CheckInput:
     areas: tuple[Area, ...] | None = None
     environment: Mapping[str, float] = field(default_factory=dict)
     elements: tuple[Part, ...] = ()
+    corridors: tuple[Corridor, ...] = ()
     tasks: Mapping[str, Part] = field(default_factory=dict)
     rally_points: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
     shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)

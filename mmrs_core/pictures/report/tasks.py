@@ -16,8 +16,6 @@ from mmrs_core.pictures.report.visits import Visit, visits_of
 from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.steps import StepRecord
 
-ASIDE = frozenset({"launch", "transit", "recover", "wait", "recharge", "choice", "notify"})
-"""Rules of moves that only lead to a task."""
 _ALL = 0.9995
 _SHORTEST = 1e-3
 
@@ -33,11 +31,6 @@ class _Work:
     ends: list[float] = field(default_factory=list)
     planned_begins: list[float] = field(default_factory=list)
     planned_ends: list[float] = field(default_factory=list)
-
-
-def serves(move: Move) -> bool:
-    """Return whether a move is work on its task, and not only transit."""
-    return bool(move.task) and move.rule not in ASIDE
 
 
 def task_reports(
@@ -56,14 +49,14 @@ def task_reports(
     for robot in program.robots:
         moves = {move.id: move for move in robot.moves}
         for move in robot.moves:
-            if serves(move):
+            if move.works:
                 works.setdefault(move.task, _Work())
         records = flight.robots[robot.id].records
         flown = _by_move(visits_of(records), moves)
         planned = _by_move(visits_of(_of(plan, robot.id)), moves) if plan is not None else None
         partly = _partly(legs.get(robot.id, ()), flight.robots[robot.id].track)
         for id in moves:
-            if serves(moves[id]):
+            if moves[id].works:
                 visits = flown.get(id, [])
                 asked = planned.get(id, []) if planned is not None else None
                 _count(works[moves[id].task], robot.id, visits, asked, partly.get(id, 0.0))
