@@ -32,7 +32,7 @@ from mmrs_core.languages.modelset import read_project
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.scene import AreaUse, Part
+from mmrs_core.scene import AreaUse, Corridor, Part
 from mmrs_core.testing.conformance import ConstraintConformance
 from mmrs_core.testing.models import breaches
 from mmrs_core.testing.small_programs import go, hold, use
@@ -376,12 +376,19 @@ def _asked(
     made: RobotProgram,
     environment: Mapping[str, float] | None = None,
     meadow: float | None = None,
+    gate: float | None = None,
     **tasks: Part,
 ) -> CheckInput:
-    """Return what to check; with a meadow so many metres east of home, a policy leads the robot to it."""
+    """Return what to check.
+
+    With a meadow so many metres east of home, a policy leads the robot to it; a gate is a corridor from 20 m
+    to 60 m east of home, so many metres wide.
+    """
     bounds = Part((), {"min": -10.0, "max": 40.0})
     type = rover(max_payload=1.0, attributes={"operatingTemperature": bounds})
     asked = given(made, type=type, environment=environment or {}, tasks=tasks)
+    if gate is not None:
+        return replace(asked, areas=(), corridors=(Corridor("gate", ((20.0, 0.0), (60.0, 0.0)), gate),))
     if meadow is None:
         return asked
     area = square("meadow", (meadow, 0.0), 20.0, use=AreaUse.EMERGENCY)

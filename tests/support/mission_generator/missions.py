@@ -47,7 +47,7 @@ class Maker:
         self.seed, self.random, self.registry = seed, Random(seed), registry
         self.solvable = self.random.random() < 0.6
         self.taken: list[tuple[float, float, float]] = []
-        self.far = 0.0
+        self.far, self.through = 0.0, False
         self.inside: list[tuple[float, float, float]] = []
 
     def make(self, namespace: str, metaclass: str, /, **features):
@@ -213,8 +213,40 @@ class Maker:
             forbiddenAreas=forbidden,
             obstacles=obstacles,
             emergencyAreas=emergency,
+            corridors=self._corridors(),
             environment=None if self.solvable else self._wind(),
         )
+
+    def _corridors(self):
+        """Return up to two corridors south of the homes, where nothing is in the way."""
+        random = Random(f"corridors {self.seed}")
+        if random.random() < 0.75:
+            return []
+        self.through = True
+        found = []
+        for k, use in enumerate(
+            random.choice([["BOTH"], ["ENTRY"], ["EXIT"], ["ENTRY", "EXIT"], ["BOTH"] * 2])
+        ):
+            x, y = random.uniform(-150.0, 250.0), -SIZE - random.uniform(130.0, 170.0) - 60.0 * k
+            line = [(x, y), (x + random.choice([-60.0, 60.0]), y + random.uniform(-20.0, 20.0))]
+            if random.random() < 0.4:
+                line.insert(1, (x, y - 25.0))
+            low = random.choice([None, 18.0, 35.0])
+            high = random.choice([None, (low or 0.0) + 25.0])
+            heights = {"minHeight": low, "maxHeight": high}
+            found.append(
+                self.make(
+                    CONTEXT,
+                    "Corridor",
+                    name=f"corridor {k}",
+                    line=self.ring(line),
+                    width=random.uniform(10.0, 20.0),
+                    use=use,
+                    robotTypes=["steady"] if random.random() < 0.2 else [],
+                    **{name: value for name, value in heights.items() if value is not None},
+                )
+            )
+        return found
 
     def _wind(self):
         return self.make(
@@ -279,7 +311,7 @@ class Maker:
             return None
         slowest = 0.5 * 10.0
         climbs = 120.0 / 3.0 + 120.0 / 2.0
-        way = 2 * DETOUR * (self.far + SIZE) / slowest
+        way = 2 * DETOUR * (self.far + SIZE * (2 if self.through else 1)) / slowest
         return Witness(way + climbs + 60.0, self.lifetime * 0.8)
 
 
