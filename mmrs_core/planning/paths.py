@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Sequence
+from copy import copy
 from itertools import pairwise
 from math import dist, inf
 from typing import Any
@@ -14,7 +15,8 @@ from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.geometry.segments import legs_of
 from mmrs_core.planning.curves import with_fewer_corners
 from mmrs_core.planning.layers import Layers
-from mmrs_core.planning.obstacles import Flags, Obstacles
+from mmrs_core.planning.obstacles import Flags, Floats, Obstacles
+from mmrs_core.planning.reach import Reach
 from mmrs_core.planning.visibility import Visibility
 from mmrs_core.scene import Area, Position
 from mmrs_core.scene.timing import Rates
@@ -35,6 +37,8 @@ class Space:
     corners are cut by sloped legs where these are clear and quicker.
 
     Attributes:
+        reach: where the robot is in range of its radio; None: everywhere.
+        anywhere: the same space of a robot whose radio need not be in range.
         remembered: what robots that are alike have found out together.
     """
 
@@ -62,12 +66,28 @@ class Space:
         self.rates = rates or Rates(1.0, 1.0, 1.0)
         self._least = 2.0 * turning_radius
         kept_from = tuple(areas)
-        self.empty = not kept_from
+        self.reach: Reach | None = None
+        self.anywhere = self
         self._obstacles = Obstacles(kept_from, clearance)
         self._visibility = Visibility(self._obstacles)
         self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
         self.remembered: dict[Hashable, tuple[dict[Any, Any], dict[Any, Any]]] = {}
         self._columns: dict[tuple[Position, Position], str] = {}
+
+    def within(self, reach: Reach) -> Space:
+        """Return the same space of a robot that stays in range of its radio."""
+        other = copy(self)
+        other.reach, other._routes, other.remembered = reach, {}, {}
+        return other
+
+    @property
+    def empty(self) -> bool:
+        """Return whether nothing is in the way anywhere."""
+        return not self._obstacles and self.reach is None
+
+    def in_range(self, polyline: Sequence[Position]) -> bool:
+        """Return whether the robot is in range of its radio all along a polyline."""
+        return self.reach is None or self.reach.contains(polyline)
 
     def is_clear(self, polyline: Sequence[Position]) -> bool:
         """Return whether a polyline (one point or more) keeps its distance; touching counts as clear."""
@@ -92,11 +112,14 @@ class Space:
         return self._columns[key]
 
     def _blockers(self, polyline: Sequence[Position], *, spare: float = EPSILON / 2) -> Flags:
-        if self.empty:
+        if not self._obstacles:
             return np.zeros(0, np.bool_)
         found = self._obstacles.blocking(legs_of(polyline), spare=spare)
         flags: Flags = np.logical_or.reduce(found, axis=0)
         return flags
+
+    def _covered(self, legs: Floats) -> Flags:
+        return np.ones(len(legs), np.bool_) if self.reach is None else self.reach.covers(legs)
 
     def seconds(self, route: Sequence[Position]) -> float:
         """Return how long a route takes at the robot's rates."""
@@ -123,18 +146,24 @@ class Space:
     def _drivable(self, found: tuple[Position, ...] | str) -> tuple[Position, ...] | str:
         if isinstance(found, str) or not self._least:
             return found
-        return with_fewer_corners(found, self._least, lambda path: not self._blockers(path).any())
+        return with_fewer_corners(
+            found, self._least, lambda path: not self._blockers(path).any() and self.in_range(path)
+        )
 
     def _search(self, start: Position, goal: Position) -> tuple[Position, ...] | str:
         for end, name in ((start, "start"), (goal, "goal")):
             inside = self.column_blockers(end, end[2])
             if inside:
                 return f"{name} {_words(end)} is within the clearance of {inside}"
+            if self.reach is not None and not self.reach.contains((end,)):
+                return f"{name} {_words(end)} is out of range: {self.reach.beyond((end,))}"
         blockers = self._blockers((start, goal))
-        if not blockers.any() and self.rates.even(start, goal) < inf:
+        if not blockers.any() and self.rates.even(start, goal) < inf and self.in_range((start, goal)):
             return (start, goal)
         path = self._at_one_height(start, goal)
-        return self._cut_short(path) if path else self._at_several_heights(start, goal, blockers)
+        if path and self.in_range(path):
+            return self._cut_short(path)
+        return self._at_several_heights(start, goal, blockers)
 
     def _at_one_height(self, start: Position, goal: Position) -> list[Position] | None:
         """Return the quickest path of the sort up or down, level, up or down; None if there is none."""
@@ -190,7 +219,9 @@ class Space:
         band = (self.floor, self.ceiling)
         while True:
             chosen = np.flatnonzero(active).tolist()
-            path = Layers(self._obstacles, self._visibility, chosen, (start, goal), band, self.rates).path()
+            path = Layers(
+                self._obstacles, self._visibility, chosen, (start, goal), band, self.rates, self.reach
+            ).path()
             if path is None:
                 return self._no_way(start, goal, active)
             blockers = self._blockers(path)
@@ -201,7 +232,10 @@ class Space:
     def _no_way(self, start: Position, goal: Position, active: Flags) -> str:
         names = self._obstacles.names(active)
         between = f"from {_words(start)} to {_words(goal)} between {self.floor:g} m and {self.ceiling:g} m"
-        return f"no path {between} keeps clear of {names}" if names else f"no path {between} up or down"
+        clear = f"keeps clear of {names}" if names else ""
+        if self.reach is not None:
+            return f"no path {between} {clear}{' and ' if names else ''}stays in range of its radio"
+        return f"no path {between} {clear or 'up or down'}"
 
     def _cut_short(self, path: Sequence[Position]) -> tuple[Position, ...]:
         """Return the quickest path through some of the positions, in order, by clear straight legs."""
@@ -213,7 +247,7 @@ class Space:
         if not pairs:
             return tuple(path)
         legs = np.array([[path[i], path[j]] for i, j in pairs])
-        clear = ~np.logical_or.reduce(self._obstacles.blocking(legs), axis=1)
+        clear = ~np.logical_or.reduce(self._obstacles.blocking(legs), axis=1) & self._covered(legs)
         steps = {(i, i + 1) for i in range(count - 1)}
         steps |= {pair for pair, free in zip(pairs, clear.tolist(), strict=True) if free}
         best, came = [0.0, *[inf] * (count - 1)], [0] * count

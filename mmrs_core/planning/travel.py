@@ -13,6 +13,7 @@ from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.corners import Corners
 from mmrs_core.planning.corridors import Corridors, Passage
 from mmrs_core.planning.paths import Space
+from mmrs_core.planning.reach import Reach, Reaches
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.scene import Area, AreaUse, Corridor, Kinematics, Point, Position, Robot, Scene
 from mmrs_core.scene.timing import MoveSeconds, Rates, bounded
@@ -60,8 +61,9 @@ class Spaces:
             from_homes: metres that robots keep from the homes of others, but for homes that are nearer to
                 their own; None: homes are free space.
         """
-        self._scene, self._from_homes = scene, from_homes
+        self._scene, self._from_homes, self._reaches = scene, from_homes, Reaches(scene)
         self._spaces: dict[tuple[float, float, float, Rates, float, frozenset[int]], Space] = {}
+        self._within: dict[tuple[int, Reach], Space] = {}
 
     def of(self, robot: Robot) -> Space:
         """Return the space of a robot whose kinematics are known."""
@@ -73,7 +75,12 @@ class Spaces:
         key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates, radius, alike)
         if key not in self._spaces:
             self._spaces[key] = Space(areas, *key[:3], rates=rates, turning_radius=radius)
-        return self._spaces[key]
+        space, reach = self._spaces[key], self._reaches.of(robot)
+        if reach is None:
+            return space
+        if (id(space), reach) not in self._within:
+            self._within[id(space), reach] = space.within(reach)
+        return self._within[id(space), reach]
 
     def _homes_kept_from(self, robot: Robot) -> Iterator[Area]:
         if self._from_homes is None:
@@ -235,10 +242,16 @@ class Travel:
         Raises:
             UnreachableError: something is below.
         """
+        down = self._down(start, self.space)
+        if down.height is not None and not self.space.in_range((start, (*start[:2], down.height))):
+            raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is out of range")
+        return down
+
+    def _down(self, start: Position, space: Space) -> Route:
         if not self.kinematics.launches:
             return Route((start,), 0.0, 0.0)
         ground = ground_height(start, self.robot.home)
-        below = self.space.column_blockers(start, ground)
+        below = space.column_blockers(start, ground)
         if below:
             raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
         down = self._upright(self.kinematics.landing(start[2] - ground))
@@ -247,19 +260,20 @@ class Travel:
     def land_at(self, start: Position, place: Point) -> Route:
         """Return the route from a position to another place than home, and there down to the ground.
 
-        Robots that do not launch end at the height of their home.
+        Robots that do not launch end at the height of their home. The radio need not be in range.
 
         Raises:
             UnreachableError: there is none.
         """
         goal, surface = (*place, start[2]), (*place, self.robot.home[2])
-        points = self.space.route(start, goal) if goal != start else (start,)
+        space = self.space.anywhere
+        points = space.route(start, goal) if goal != start else (start,)
         if not self.kinematics.launches:
-            upright = () if goal == surface else self.space.route(goal, surface)[1:]
+            upright = () if goal == surface else space.route(goal, surface)[1:]
             route = self._timed((*points, *upright))
             told = self.kinematics.setting_out().longest + self.kinematics.timing.reporting
             return replace(route, longest=route.longest + told)
-        down = self.come_down(goal)
+        down = self._down(goal, space)
         seconds = MoveSeconds(*(a + b for a, b in zip(self._gone(points), down.bounds, strict=True)))
         return self._route(points, seconds, length_of(points) + down.length, down.height)
 
@@ -413,8 +427,11 @@ class Travel:
     def _above_home(self, height: float) -> tuple[Position, str]:
         home = self.robot.home
         above = (home[0], home[1], height)
-        near = self.space.column_blockers(home, height)
-        return above, f"home of robot '{self.robot.name}' is within the clearance of {near}" if near else ""
+        near, whose = self.space.column_blockers(home, height), f"home of robot '{self.robot.name}'"
+        if near:
+            return above, f"{whose} is within the clearance of {near}"
+        in_range = self.space.in_range((home, above))
+        return above, "" if in_range else f"{height:g} m above {whose} it is out of range of its radio"
 
     def _across(self, start: Position, goal: Position) -> Route | str:
         return self._routed(start, goal, level=self._altitude)
@@ -434,6 +451,8 @@ class Travel:
         """Return a route up to a level, along it, and down to the goal; None where that is blocked."""
         up, over = (start[0], start[1], level), (goal[0], goal[1], level)
         if self.space.column_blockers(start, level) or self.space.column_blockers(goal, level):
+            return None
+        if not self.space.in_range((start, up)) or not self.space.in_range((over, goal)):
             return None
         try:
             route = (start, *self.space.route(up, over), goal)

@@ -19,11 +19,15 @@ from mmrs_core.contributions.rules import (
     robot_kind_of,
 )
 from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
+from mmrs_core.planning.positions import SLACK
+from mmrs_core.planning.reach import Reach, in_range_of, reach_of, remedies_for, unsure
+from mmrs_core.planning.remedies import or_else
 from mmrs_core.scene import (
     Device,
     Kinematics,
     Name,
     Part,
+    Position,
     Robot,
     Scene,
     SharedWorks,
@@ -32,6 +36,7 @@ from mmrs_core.scene import (
     Value,
     Work,
 )
+from mmrs_core.scene.relays import Relay, relays_of
 from mmrs_runtime.policies import in_precedence
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
@@ -60,38 +65,64 @@ def expand(
             for robot in robots
         }
     )
-    sorts = [_Sort(robots, sort, works.sorts) for sort in range(len(numbers))]
-    refusals = _Refusals(works, robots)
+    radio = _Radio(relays_of(scene.elements), scene.position_error)
+    sorts = [_Sort(robots, sort, works.sorts, radio) for sort in range(len(numbers))]
+    refusals = _Refusals(works, robots, radio)
     for task in scene.tasks:
         if not task.part.is_a(CONTROL_TASK):
             _expand_task(task, scene, rules, sorts, refusals)
-    reasons = list(_undoable(scene, works, refusals))
+    reasons = list(_undoable(scene, works, refusals, radio))
     if reasons:
         raise InfeasibleError(f"{len(reasons)} of the tasks can be done by no robot", reasons)
     return replace(scene, works=works, refusals=refusals)
 
 
+class _Radio:
+    """Where the radios of robots reach; found once for those of one home.
+
+    Attributes:
+        relays: of the context.
+        error: of positions, metres.
+    """
+
+    def __init__(self, relays: Sequence[Relay] = (), error: float = 0.0) -> None:
+        self.relays, self.error = relays, error
+        self._known: dict[tuple[Position, float], Reach | None] = {}
+
+    def of(self, robot: Robot) -> Reach | None:
+        key = robot.home, range_of(robot)
+        if key not in self._known:
+            self._known[key] = reach_of(robot, self.relays, self.error)
+        return self._known[key]
+
+
 class _Sort:
     """Robots that do alike what each of them can do, so that one work serves all whose radio reaches it."""
 
-    def __init__(self, robots: Sequence[Robot], sort: int, sorts: Mapping[str, int]) -> None:
+    def __init__(self, robots: Sequence[Robot], sort: int, sorts: Mapping[str, int], radio: _Radio) -> None:
         self.places = [i for i, robot in enumerate(robots) if sorts[robot.name] == sort]
-        self.first = robots[self.places[0]]
-        self._reach = _reach(self.first)
-        self._homes = np.array([robots[i].home for i in self.places])
+        self.robots = [robots[i] for i in self.places]
+        self.first, self._radio = self.robots[0], radio
+        self._range = range_of(self.first)
+        self._homes = np.array([robot.home for robot in self.robots])
 
     def reached(self, work: Work) -> NDArray[np.bool_] | bool:
-        """Return, by robot, whether its radio reaches all of a work from its home."""
-        if self._reach == inf:
+        """Return, by robot, whether its radio reaches all of a work from its home, or over relays."""
+        if self._range == inf:
             return True
-        return np.asarray(_most_distant(work, self._homes) <= self._reach)
+        reached = _most_distant(work, self._homes) + self._radio.error <= self._range + SLACK
+        if self._radio.relays:
+            for i in np.flatnonzero(~reached).tolist():
+                reach = self._radio.of(self.robots[i])
+                reached[i] = reach is None or in_range_of(reach, work.strokes)
+        return np.asarray(reached)
 
 
 class _Refusals(Mapping[tuple[str, str], str]):
     """Why robots cannot do tasks; pairs take no room, for words are made when they are asked for."""
 
-    def __init__(self, works: SharedWorks, robots: Sequence[Robot]) -> None:
-        self.works, self._robots = works, {robot.name: robot for robot in robots}
+    def __init__(self, works: SharedWorks, robots: Sequence[Robot], radio: _Radio) -> None:
+        self.works, self._robots, self._radio = works, {robot.name: robot for robot in robots}, radio
         self.of_sorts: dict[str, Sequence[Work | str]] = {}
 
     def __getitem__(self, pair: tuple[str, str]) -> str:
@@ -100,7 +131,9 @@ class _Refusals(Mapping[tuple[str, str], str]):
         if pair in self.works:
             raise KeyError(pair)
         found = self.of_sorts[task][self.works.sorts[robot]]
-        return found if isinstance(found, str) else out_of_reach(found, self._robots[robot]) or ""
+        if isinstance(found, str):
+            return found
+        return out_of_reach(found, self._robots[robot], self._radio.relays, self._radio.error) or ""
 
     def __iter__(self) -> Iterator[tuple[str, str]]:
         """Yield the pairs that have no work."""
@@ -158,12 +191,27 @@ def _missing(task: Task, devices: Mapping[str, Device]) -> Iterator[str]:
     yield from (f"has no device for action '{action}'" for action in task.actions if action not in supported)
 
 
-def _undoable(scene: Scene, works: SharedWorks, refusals: Mapping[tuple[str, str], str]) -> Iterator[str]:
+def _undoable(scene: Scene, works: SharedWorks, refusals: _Refusals, radio: _Radio) -> Iterator[str]:
     for task in scene.tasks:
         if task.part.is_a(CONTROL_TASK) or works.able(task.name):
             continue
         why = "; ".join(f"{robot.name}: {refusals[task.name, robot.name]}" for robot in scene.robots)
-        yield f"task '{task.name}' can be done by no robot ({why})"
+        remedy = or_else([*_remedies(task.name, scene.robots, refusals, radio)])
+        yield f"task '{task.name}' can be done by no robot ({why}){remedy}"
+
+
+def _remedies(task: str, robots: Sequence[Robot], refusals: _Refusals, radio: _Radio) -> Iterator[str]:
+    """Yield what would do for the nearest of the robots whose radio is all that is short."""
+    nearest = None
+    for robot in robots:
+        work = refusals.of_sorts[task][refusals.works.sorts[robot.name]]
+        if isinstance(work, Work):
+            away = float(_most_distant(work, np.array([robot.home]))[0]) - range_of(robot)
+            nearest = min(nearest or (away, robot, work), (away, robot, work), key=lambda each: each[0])
+    if nearest is not None:
+        _, robot, work = nearest
+        found = list(remedies_for(robot, radio.relays, radio.error, work.strokes))
+        yield from [f"for '{robot.name}', {each}" for each in found[:1]] + found[1:]
 
 
 def unfit(robot: Robot, scene: Scene) -> str | None:
@@ -182,26 +230,41 @@ def unfit(robot: Robot, scene: Scene) -> str | None:
     return f"operates from {lowest:g} to {highest:g} °C, not at {temperature:g} °C"
 
 
-def out_of_reach(work: Work, robot: Robot) -> str | None:
-    """Return why the radio does not reach all of a work from the robot's home; None if it does."""
-    reach = _reach(robot)
-    most = inf if reach == inf else float(_most_distant(work, np.array([robot.home]))[0])
-    return None if most <= reach else f"would be {ceil(most)} m from home, its radio reaches {reach:g} m"
+def out_of_reach(work: Work, robot: Robot, relays: Sequence[Relay] = (), error: float = 0.0) -> str | None:
+    """Return why the radio does not reach all of a work from the robot's home; None if it does.
+
+    Args:
+        work: of a task.
+        robot: with its home.
+        relays: of the context.
+        error: of positions, metres.
+    """
+    reach = reach_of(robot, relays, error)
+    if reach is None:
+        return None
+    most = float(_most_distant(work, np.array([robot.home]))[0]) + error
+    if most <= reach.ranges[0] + SLACK:
+        return None
+    if not relays:
+        return f"would be {ceil(most)} m from home, its radio reaches {reach.ranges[0]:g} m"
+    strokes = [each for each in work.strokes if not in_range_of(reach, [each])]
+    return f"would be {reach.beyond(strokes[0].points, unsure(strokes[0]))}" if strokes else None
 
 
 def _most_distant(work: Work, homes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return, by home, the metres to the point of a work that is most distant from it."""
-    points = np.array([point for stroke in work.strokes for point in stroke.points])
+    points = np.array([(*point, unsure(stroke)) for stroke in work.strokes for point in stroke.points])
     found = np.zeros(len(homes))
     if len(points) < len(homes):
         for each in points:
-            np.maximum(found, np.linalg.norm(homes - each, axis=1), out=found)
+            np.maximum(found, np.linalg.norm(homes - each[:3], axis=1) + each[3], out=found)
     else:
-        found[:] = [np.linalg.norm(points - each, axis=1).max() for each in homes]
+        found[:] = [(np.linalg.norm(points[:, :3] - each, axis=1) + points[:, 3]).max() for each in homes]
     return found
 
 
-def _reach(robot: Robot) -> float:
+def range_of(robot: Robot) -> float:
+    """Return how far the radio of a robot reaches, metres; inf where that is unknown."""
     return _number(robot.type.part.attributes.get("communicationRange"), inf)
 
 

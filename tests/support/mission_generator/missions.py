@@ -18,6 +18,8 @@ MISSION, CONTEXT = "urn:mmrs:mission:1.0", "urn:mmrs:context:1.0"
 ROBOT, DRONE, SURVEY = "urn:mmrs:robot:1.0", "urn:mmrs:multicopter:1.0", "urn:mmrs:survey:1.0"
 SIZE = 400.0
 GAP = 30.0
+RADIO, FAR = 300.0, 5000.0
+"""Metres that radios reach in missions with relays, and in others."""
 DETOUR = 1.6
 
 
@@ -49,6 +51,8 @@ class Maker:
         self.taken: list[tuple[float, float, float]] = []
         self.far, self.through = 0.0, False
         self.inside: list[tuple[float, float, float]] = []
+        self.work: list[tuple[float, float, float]] = []
+        self.relayed = Random(f"relays {seed}").random() < 0.3
 
     def make(self, namespace: str, metaclass: str, /, **features):
         return self.registry.create(namespace, metaclass, **features)
@@ -111,6 +115,7 @@ class Maker:
         gap = GAP if self.solvable else -15.0
         discs = shapes.separated(self.random, count, SIZE, (25.0, 90.0), gap, self.taken)
         self.taken.extend(discs)
+        self.work = discs or [(0.0, 0.0, 40.0)]
         tasks = [self._task(k, *disc) for k, disc in enumerate(discs)]
         return tasks or [self._task(0, 0.0, 0.0, 40.0)]
 
@@ -214,6 +219,7 @@ class Maker:
             obstacles=obstacles,
             emergencyAreas=emergency,
             corridors=self._corridors(),
+            elements=[*self._relays()] if self.relayed else [],
             environment=None if self.solvable else self._wind(),
         )
 
@@ -248,6 +254,23 @@ class Maker:
             )
         return found
 
+    def _relays(self):
+        """Return relays in a row from the homes to each task, so that paths from task to task lead back.
+
+        Rows are wide enough for every detour around an obstacle; in wild missions some relays are missing.
+        """
+        random = Random(f"relays of {self.seed}")
+        begin = (50.0, -SIZE - 40.0)
+        for row, (x, y, _) in enumerate(self.work):
+            count = int(hypot(x - begin[0], y - begin[1]) / 200.0) + 1
+            for k in range(1, count + 1):
+                east, north = (a + (b - a) * k / count for a, b in zip(begin, (x, y), strict=True))
+                position = self.point(east, north, random.choice([0.0, 10.0, 25.0]))
+                far = random.uniform(RADIO, 2.0 * RADIO)
+                if self.solvable or random.random() < 0.8:
+                    name = f"relay {row}.{k}"
+                    yield self.make(CONTEXT, "Relay", name=name, position=position, range=far)
+
     def _wind(self):
         return self.make(
             CONTEXT,
@@ -274,7 +297,7 @@ class Maker:
                 "Drone",
                 name=name,
                 gps=True,
-                communicationRange=5000.0,
+                communicationRange=RADIO if self.relayed else FAR,
                 onBoardObstacleAvoidance=False,
                 launchType="VTOL",
                 maxAltitude=120.0,

@@ -4,12 +4,12 @@ import time
 from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import inf
+from math import dist, inf
 
 import numpy as np
 import shapely
 
-from mission_generator.missions import DRONE, sample
+from mission_generator.missions import CONTEXT, DRONE, sample
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import BEHAVIOUR
@@ -22,6 +22,10 @@ from mmrs_runtime.semantics import Outcome as Outcomes
 GRID = 1e-6
 NEAR = 1e-3
 """Metres by which a track may come nearer than allowed: the rounding of coordinates in a file."""
+
+
+SHARES = (0.0, 0.25, 0.5, 0.75)
+"""Of each stretch of a track, the places that are looked at."""
 
 
 @dataclass
@@ -87,6 +91,7 @@ def _carry_out(folder, contributions, outcome):
         outcome.complaints.append(f"replay: ends with {replayed.outcome}; {run.ending}")
     outcome.makespan = run.ending.time
     outcome.complaints += list(_intrusions(scene, run.tracks))
+    outcome.complaints += list(_silences(scene, run.tracks))
     outcome.complaints += list(_overdrafts(scene, run.tracks))
     outcome.complaints += list(_repetitions(scene, program))
     outcome.complaints += list(_approaches(scene, run.tracks))
@@ -149,6 +154,28 @@ def _approaches(scene, tracks):
         least = scene.minimum_separation
         if nearest < least - NEAR:
             yield f"'{one}' and '{two}' come to {nearest:.3f} m of each other, not {least:g} m"
+
+
+def _silences(scene, tracks):
+    """Yield where a robot is out of range of its home and of all relays that a chain leads to."""
+    relays = [each.attributes for each in scene.elements if each.is_a((CONTEXT, "Relay"))]
+    for name, track in tracks.items():
+        robot = scene.robot(name)
+        reach = robot.type.part.attributes["communicationRange"]
+        balls, left = [(robot.home, reach)], [(each["position"], each["range"]) for each in relays]
+        for at, range in balls:
+            near = [each for each in left if dist(each[0], at) <= min(each[1], range)]
+            balls += near
+            left = [each for each in left if each not in near]
+        ends = np.array([(sample.east, sample.north, sample.up) for sample in track])
+        places = np.concatenate([ends + share * (np.roll(ends, -1, axis=0) - ends) for share in SHARES])
+        places = places.reshape(len(SHARES), -1, 3)[:, :-1].reshape(-1, 3)
+        beyond = np.min(
+            [np.linalg.norm(places - at, axis=1) - min(range, reach) for at, range in balls], axis=0
+        )
+        if beyond.max(initial=-inf) > NEAR:
+            at = places[beyond.argmax()].round(1).tolist()
+            yield f"'{name}' is {beyond.max():.3f} m out of range at {at}"
 
 
 def _overdrafts(scene, tracks):

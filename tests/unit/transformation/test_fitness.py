@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from mmrs_core.scene import Capability, Frame, Part, Policy, Robot, RobotType, Scene, Stroke, Work
+from mmrs_core.scene.relays import Relay
 from mmrs_core.transformation.expand import expand, out_of_reach, unfit
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
 
@@ -47,3 +48,20 @@ def test_robots_of_an_expanded_scene_have_the_policies_of_their_kind_behind_thos
     whole = replace(scene_at(), robots=(robot,), policies=(Policy("OBSTACLE", "LAND"),))
     found = expand(whole, {}, {kind.metaclass: kind}, {})
     assert found.responses(found.robots[0]) == {"OBSTACLE": "LAND", "LINK_LOST": "EMERGENCY_AREA"}
+
+
+def test_a_position_error_counts_for_the_radio_as_it_does_in_the_check():
+    near = robot_with(communicationRange=50.0)
+    work = work_at((30.0, 40.0, 0.0))
+    assert out_of_reach(work, near, error=0.5) == "would be 51 m from home, its radio reaches 50 m"
+
+
+def test_a_work_in_range_of_a_relay_with_a_chain_is_in_reach():
+    near, far = robot_with(communicationRange=50.0), work_at((0.0, 40.0, 0.0), (0.0, 90.0, 0.0))
+    mast = Relay("mast", (0.0, 45.0, 0.0), 50.0)
+    assert out_of_reach(far, near, [mast]) is None
+    severed = Relay("mast", (0.0, 51.0, 0.0), 60.0)
+    assert out_of_reach(far, near, [severed]) == (
+        "would be 90.00 m from home at (0.0, 90.0, 0.0), its radio reaches 50.00 m;"
+        " no chain of relays leads home from relay 'mast'"
+    )

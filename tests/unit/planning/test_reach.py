@@ -1,0 +1,105 @@
+"""Routes that stay in range of the radio, and what would bring tasks into it, worked out by hand."""
+
+from dataclasses import replace
+from itertools import pairwise
+from math import dist
+
+import pytest
+from plain_scenes import box, robot
+
+from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.paths import Space
+from mmrs_core.planning.reach import reach_of, remedies_for
+from mmrs_core.scene import Part, Stroke
+from mmrs_core.scene.relays import Relay
+
+HOME = (0.0, 0.0, 0.0)
+HILL = Relay("hill", (90.0, 0.0, 0.0), 100.0)
+
+
+def one(range=100.0, home=HOME):
+    part = Part((), {"communicationRange": range})
+    made = robot(home=home)
+    return replace(made, type=replace(made.type, part=part))
+
+
+def reach(*relays, range=100.0, error=0.0):
+    found = reach_of(one(range), relays, error)
+    assert found is not None
+    return found
+
+
+def length(route):
+    return sum(dist(a, b) for a, b in pairwise(route))
+
+
+def test_a_leg_from_ball_to_ball_is_covered_where_both_meet():
+    covers = reach(HILL)
+    assert covers.contains(((-50.0, 0.0, 0.0), (180.0, 0.0, 0.0)))
+    assert not covers.contains(((0.0, 95.0, 0.0), (90.0, 95.0, 0.0)))
+    assert not covers.contains(((-50.0, 0.0, 0.0), (191.0, 0.0, 0.0)))
+    assert covers.contains((HOME,))
+    assert not covers.contains(((0.0, 0.0, 101.0),))
+
+
+def test_balls_are_smaller_by_the_position_error():
+    assert reach(error=5.0).contains(((95.0, 0.0, 0.0),))
+    assert not reach(error=5.0).contains(((95.1, 0.0, 0.0),))
+
+
+def test_a_route_turns_where_two_ranges_meet_and_is_as_short_as_can_be():
+    space = Space((), 1.0).within(reach(HILL))
+    start, goal = (0.0, 95.0, 0.0), (90.0, 95.0, 0.0)
+    route = space.route(start, goal)
+    corner = (45.0, (100.0**2 - 45.0**2) ** 0.5, 0.0)
+    assert length(route) == pytest.approx(dist(start, corner) + dist(corner, goal), abs=0.02)
+    assert space.in_range(route)
+    assert Space((), 1.0).route(start, goal) == (start, goal)
+
+
+def test_a_route_goes_around_an_obstacle_on_the_side_that_is_in_range():
+    wall = box("wall", 45.0, 10.0, 55.0, 80.0)
+    ends = (20.0, 75.0, 0.0), (60.0, 75.0, 0.0)
+    free, held = Space((wall,), 1.0), Space((wall,), 1.0).within(reach())
+    beyond, route = free.route(*ends), held.route(*ends)
+    assert not held.in_range(beyond)
+    assert held.in_range(route)
+    assert free.is_clear(route)
+    assert length(route) > length(beyond) + 20.0
+
+
+def test_there_is_no_route_where_an_obstacle_leaves_no_room_in_range():
+    wall = box("wall", 40.0, -120.0, 50.0, 120.0)
+    with pytest.raises(UnreachableError, match="keeps clear of 'wall' and stays in range of its radio"):
+        Space((wall,), 1.0, ceiling=30.0).within(reach()).route(HOME, (80.0, 0.0, 0.0))
+
+
+def test_ranges_that_meet_at_another_height_only_are_changed_there():
+    mast = Relay("mast", (0.0, 0.0, 98.0), 100.0)
+    low, high = (99.0, 0.0, 0.0), (95.0, 20.0, 98.0)
+    space = Space((), 1.0).within(reach(mast))
+    assert not space.in_range((low, high))
+    assert space.in_range(space.route(low, high))
+
+
+def test_the_goal_out_of_range_is_named_with_the_nearest_relay():
+    severed = Relay("far", (500.0, 0.0, 0.0), 100.0)
+    with pytest.raises(UnreachableError) as refused:
+        Space((), 1.0).within(reach(HILL, severed)).route(HOME, (200.0, 0.0, 0.0))
+    assert str(refused.value) == (
+        "goal (200.0, 0.0, 0.0) is out of range: 110.00 m from relay 'hill' at (200.0, 0.0, 0.0),"
+        " its radio reaches 100.00 m; no chain of relays leads home from relay 'far'"
+    )
+
+
+def test_a_relay_that_would_do_is_named_with_its_range_and_place():
+    strokes = (Stroke(((180.0, 0.0, 0.0), (180.0, 40.0, 0.0))),)
+    found = list(remedies_for(one(), (), 0.0, strokes))
+    assert found == ["a relay of range 93 m at (92, 10, 0)", "a communicationRange of 185 m"]
+
+
+def test_no_relay_is_named_where_one_is_not_enough():
+    strokes = (Stroke(((300.0, 0.0, 0.0),)),)
+    assert list(remedies_for(one(), (), 0.0, strokes)) == ["a communicationRange of 300 m"]
+    chain = (Relay("mast", (100.0, 0.0, 0.0), 100.0),)
+    assert next(remedies_for(one(), chain, 0.0, strokes)) == "a relay of range 100 m at (200, 0, 0)"
