@@ -95,7 +95,7 @@ class Corridors:
         low, high = _band(corridor, self._clearance, self._kinematics)
         for level in self._levels(line, low, high, wanted):
             points = tuple((east, north, level) for east, north in line)
-            if self._space.is_clear(points):
+            if self._space.is_clear(points) and self._space.in_range(points):
                 return Passage(corridor.name, points)
         return self._blocked(corridor, line, min(max(wanted, low), high))
 
@@ -113,7 +113,10 @@ class Corridors:
 
     def _blocked(self, corridor: Corridor, line: Sequence[Point], level: float) -> str:
         """Return which areas are in the way, and by how much the line comes too near to them."""
-        names = self._space.blockers([(east, north, level) for east, north in line])
+        points = [(east, north, level) for east, north in line]
+        names = self._space.blockers(points)
+        if not names and self._space.reach is not None:
+            return f"corridor '{corridor.name}' is out of range: {self._space.reach.beyond(points)}"
         track = shapely.LineString(line)
         short = [
             area.safety_distance + self._clearance - track.distance(shapely.Polygon(area.shell))

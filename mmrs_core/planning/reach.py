@@ -34,7 +34,7 @@ _PLACES = 33
 """Places on each leg that are looked at for the farthest one out of range."""
 
 _HALVINGS = 60
-"""Times that the stretch is cut on which the place of a relay is looked for."""
+"""Times that the stretch is cut on which the position of a relay is looked for."""
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ class Reaches:
 
 
 def _corners(scene: Scene) -> Iterator[Position]:
-    """Yield the corners of a box in which robots stay: about homes, works and the areas on their way."""
+    """Yield the corners of a box in which robots stay: about homes, works, corridors and areas."""
     points = [robot.home for robot in scene.robots]
     points += [p for work in distinct_works(scene.works) for stroke in work.strokes for p in stroke.points]
     points += [work.entry for work in distinct_works(scene.works) if work.entry is not None]
@@ -218,6 +218,11 @@ def _corners(scene: Scene) -> Iterator[Position]:
             aside = _ASIDE * (area.safety_distance + widest + 1.0)
             sides += [(east, north, aside) for east, north in area.shell]
             heights |= {each for each in (area.low - aside, area.high + aside) if -inf < each <= ceiling}
+    for corridor in scene.corridors:
+        sides += [(east, north, apart) for east, north in corridor.line]
+        heights |= {
+            each for each in (corridor.low + widest, corridor.high - widest) if -inf < each <= ceiling
+        }
     easts = [east + sign * aside for east, _, aside in sides for sign in (-1.0, 1.0)]
     norths = [north + sign * aside for _, north, aside in sides for sign in (-1.0, 1.0)]
     if points:
@@ -271,7 +276,7 @@ def unsure(stroke: Stroke) -> float:
 
 
 def _relay_between(station: Position, points: Floats, needed: float, ground: float) -> Relay:
-    """Return the relay of the least range on the way from a station to some points, on the ground."""
+    """Return the relay of the least range between a station and some points, on the ground."""
     middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
 
     def at(share: float) -> Relay:

@@ -255,13 +255,14 @@ class Maker:
         return found
 
     def _relays(self):
-        """Return relays in a row from the homes to each task, so that paths from task to task lead back.
+        """Return relays in a row from the homes to each task, so that paths between tasks lead back.
 
         Rows are wide enough for every detour around an obstacle; in wild missions some relays are missing.
         """
         random = Random(f"relays of {self.seed}")
         begin = (50.0, -SIZE - 40.0)
-        for row, (x, y, _) in enumerate(self.work):
+        corridors = [(50.0, -SIZE - 240.0, 0.0)] if self.through else []
+        for row, (x, y, _) in enumerate([*self.work, *corridors]):
             count = int(hypot(x - begin[0], y - begin[1]) / 200.0) + 1
             for k in range(1, count + 1):
                 east, north = (a + (b - a) * k / count for a, b in zip(begin, (x, y), strict=True))

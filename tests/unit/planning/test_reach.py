@@ -8,9 +8,10 @@ import pytest
 from plain_scenes import box, robot
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.corridors import Corridors
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import reach_of, remedies_for
-from mmrs_core.scene import Part, Stroke
+from mmrs_core.scene import Corridor, Part, Stroke
 from mmrs_core.scene.relays import Relay
 
 HOME = (0.0, 0.0, 0.0)
@@ -103,3 +104,15 @@ def test_no_relay_is_named_where_one_is_not_enough():
     assert list(remedies_for(one(), (), 0.0, strokes)) == ["a communicationRange of 300 m"]
     chain = (Relay("mast", (100.0, 0.0, 0.0), 100.0),)
     assert next(remedies_for(one(), chain, 0.0, strokes)) == "a relay of range 100 m at (200, 0, 0)"
+
+
+def test_a_corridor_out_of_range_is_refused_with_the_nearest_station():
+    through = Corridor("canyon", ((60.0, 80.0), (120.0, 80.0)), 10.0)
+    flying = robot(home=HOME)
+    assert flying.kinematics is not None
+    made = Corridors([through], "in", flying, flying.kinematics, Space((), 1.0).within(reach()), ())
+    assert made.passages(10.0) == []
+    assert made.why_not(10.0) == (
+        "no corridor leads it in: corridor 'canyon' is out of range:"
+        " 144.57 m from home at (120.0, 80.0, 10.0), its radio reaches 100.00 m"
+    )
