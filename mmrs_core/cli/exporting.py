@@ -176,12 +176,14 @@ def _drawn(session: Session, given: Exported, chart: Chart) -> Iterator[Drawn]:
     mission, loaded, known = given.mission, given.loaded, session.contributions
     if mission is not None:
         yield from areas_on(chart, mission.areas)
-        yield from elements_on(chart, mission.elements, known.map_symbols)
+        corridors = (each.part for each in mission.corridors)
+        yield from elements_on(chart, (*mission.elements, *corridors), known.map_symbols)
         yield from tasks_on(chart, mission, known.map_symbols)
         yield from homes_on(chart, [(robot.name, robot.type.name, robot.home) for robot in mission.robots])
     elif loaded is not None:
         yield from areas_on(chart, loaded.place.areas or ())
-        yield from elements_on(chart, loaded.place.elements, known.map_symbols)
+        corridors = (each.part for each in loaded.place.corridors)
+        yield from elements_on(chart, (*loaded.place.elements, *corridors), known.map_symbols)
         robots = loaded.program.robots
         yield from homes_on(chart, [(robot.id, robot.type_name, robot.home) for robot in robots])
     if loaded is None:

@@ -99,8 +99,26 @@ def words_of(name: str) -> str:
     return " ".join(word if word.isupper() and len(word) > 1 else word.lower() for word in parted.split())
 
 
+def _band(corridor: Part) -> tuple[Ring, ...]:
+    """Return what lies between the two sides of a corridor."""
+    from mmrs_core.geometry.polygons import band
+    from mmrs_core.scene.attributes import number, positions
+
+    line = [(east, north) for east, north, _ in positions(corridor, "points")]
+    width = number(corridor, "width") or 0.0
+    return tuple(ring for rings in band(line, width) for ring in rings) if width > 0.0 else ()
+
+
 CORE_SYMBOLS = (
     MapSymbol((_MISSION, "Fork"), "fork", "", "⋔"),
     MapSymbol((_MISSION, "Join"), "join", "", "⋈"),
+    MapSymbol(
+        (_CONTEXT, "Corridor"),
+        "corridor",
+        "#37679b",
+        "⇄",
+        ("width", "minHeight", "maxHeight", "use", "robotTypes"),
+        _band,
+    ),
     MapSymbol((_CONTEXT, "Relay"), "relay", "", "⌁", ("range",), initial={"range": 1000.0}),
 )

@@ -104,3 +104,13 @@ def rings(piece: Polygon) -> tuple[tuple[Vertex, ...], tuple[tuple[Vertex, ...],
 
 def _ring(closed: BaseGeometry) -> tuple[Vertex, ...]:
     return tuple((float(x), float(y)) for x, y in shapely.get_coordinates(closed)[:-1])
+
+
+def band(line: Sequence[Vertex], width: float) -> tuple[tuple[tuple[Vertex, ...], ...], ...]:
+    """Return the rings of each part of what lies between two parallels of a line, at its ends cut off.
+
+    >>> band([(0.0, 0.0), (10.0, 0.0)], 4.0)
+    ((((10.0, 2.0), (10.0, -2.0), (0.0, -2.0), (0.0, 2.0)),),)
+    """
+    between = shapely.LineString(line).buffer(width / 2.0, cap_style="flat", join_style="mitre")
+    return tuple((rings(piece)[0], *rings(piece)[1]) for piece in parts(between))

@@ -167,7 +167,7 @@ def corridor_of(corridor: Element, ground: Ground, name: str = "") -> Corridor:
     """
     low, high = heights_of(corridor)
     types = texts(corridor, "robotTypes")
-    line = tuple(position_of(each, ground)[:2] for each in children(corridor, "line"))
+    line = tuple(position_of(each, ground)[:2] for each in children(corridor, "points"))
     kept = tuple(place for i, place in enumerate(line) if i == 0 or place != line[i - 1])
     return Corridor(
         name=name or label_of(corridor) or path_of(corridor).lstrip("/"),

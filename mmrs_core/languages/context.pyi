@@ -78,7 +78,7 @@ class Obstacle(Area):
 
 class Corridor(mission.NamedElement):
     """A passage between where robots start and where they work, such as an agreed piece of airspace, a harbour entrance or a gate. Every sortie leads through one whole corridor before its first task, and through one whole corridor back home after its last."""
-    line: list[mission.Coordinate]
+    points: list[mission.Coordinate]
     """The centre line in the direction of entry, from outside to the field of work; heights of its positions do not count."""
     width: float
     """Distance between its two sides, in metres; robots keep their clearance from both."""
@@ -94,7 +94,7 @@ class Corridor(mission.NamedElement):
         self,
         *,
         name: str | None = ...,
-        line: Iterable[mission.Coordinate] | None = ...,
+        points: Iterable[mission.Coordinate] | None = ...,
         width: float | None = ...,
         minHeight: float | None = ...,
         maxHeight: float | None = ...,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from math import ceil, dist, floor, inf
 
 from mmrs_core.planning.jobs import Job
@@ -125,14 +126,16 @@ def _passages(team: Team, task: str, why: str) -> Iterator[str]:
 
 def _corridors(team: Team, task: str, why: str) -> Iterator[str]:
     """Yield how corridors that keep robots from a task would let them through, each alone."""
-    for name in team.able(task):
-        robot = team.scene.robot(name)
+    users = dict[str, list[str]]()
+    for kind in team.able_kinds(task).values():
+        robot = team.scene.robot(kind)
         for each in team.scene.corridors_of(robot):
-            if f"corridor '{each.name}'" in why:
-                for words, other in _opened(team.scene, each, robot):
-                    if _fits(team, task, robot, corridors=other):
-                        yield f"for '{name}' {words}"
-                        break
+            opened = _opened(team.scene, each, robot) if f"corridor '{each.name}'" in why else ()
+            fit = (words for words, other in opened if _fits(team, task, robot, corridors=other))
+            for words in islice(fit, 1):
+                alike = [name for name in team.able(task) if team.kinds[name] == team.kinds[kind]]
+                users.setdefault(words, []).extend(f"'{name}'" for name in alike)
+    yield from (f"for {', '.join(names)} {words}" for words, names in users.items())
 
 
 def _opened(scene: Scene, corridor: Corridor, robot: Robot) -> Iterator[tuple[str, tuple[Corridor, ...]]]:

@@ -135,6 +135,8 @@ class ImportKinds:
             feature = "tasks"
         elif metaclass.is_kind(CONTEXT, "ContextElement"):
             feature = "elements"
+        elif metaclass.key == (CONTEXT, "Corridor"):
+            feature = "corridors"
         else:
             return None
         shapes = _shapes(metaclass.features)

@@ -19,7 +19,7 @@ from mmrs_core.languages.modelset import ModelSet
 
 def _line(corridor: Element, models: ModelSet) -> LineString | None:
     """Return the line of a corridor; None where one of its places is not known."""
-    positions, places = sketch_of(models).ground.positions, children(corridor, "line")
+    positions, places = sketch_of(models).ground.positions, children(corridor, "points")
     if len(places) < 2 or any(each not in positions for each in places):
         return None
     return LineString([positions[each][:2] for each in places])

@@ -47,6 +47,7 @@ from mmrs_core.scene import Name, Point, Position, RobotType, Scene, Task
 
 _ROBOT = "urn:mmrs:robot:1.0"
 _AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
+_ELEMENTS = ("elements", "corridors")
 _QUOTED = re.compile(r"'([^']+)'")
 MOST = 200
 """Problems that a picture shows."""
@@ -178,7 +179,8 @@ class _Drawing:
 
     def _tasks_and_elements(self) -> tuple[tuple[TaskPicture, ...], tuple[ElementPicture, ...]]:
         found = {"tasks": names_of(children(self._mission, "tasks"))}
-        found["elements"] = names_of(children(self._context, "elements"))
+        surroundings = (each for feature in _ELEMENTS for each in children(self._context, feature))
+        found["elements"] = names_of(surroundings)
         parts = {
             element: part_of(element, self._ground)
             for named in found.values()
@@ -245,7 +247,7 @@ def _by_name(models: ModelSet, by_path: Mapping[tuple[str, str], Point]) -> Iter
     team, context = child(models.mission, "team"), models.context
     for named in (
         names_of(children(team, "robots")),
-        *(names_of(children(context, feature)) for feature in _AREAS),
+        *(names_of(children(context, feature)) for feature in (*_AREAS, "corridors")),
         names_of(children(models.mission, "tasks")),
     ):
         for element, name in named.items():

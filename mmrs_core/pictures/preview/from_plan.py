@@ -72,7 +72,7 @@ def picture_of_plan(
         robots=tuple(_robot_picture(scene, robot, symbols, moves or {}) for robot in plan.robots),
         zones=zones_of(scene.areas, {robot.name: robot.clearance for robot in scene.robots}),
         tasks=task_pictures(scene, plan.begins, plan.ends, symbols),
-        elements=elements_of(scene.elements, symbols),
+        elements=elements_of((*scene.elements, *(each.part for each in scene.corridors)), symbols),
         handovers=tuple(_handovers(plan)),
         makespan=plan.makespan,
         notes=(*map(str, plan.left_out), *plan.notes),

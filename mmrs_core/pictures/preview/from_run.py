@@ -77,7 +77,7 @@ def picture_of_run(
         robots=robots,
         zones=zones,
         gaps=gap_of_clearances(zones) if place.areas is not None else (NO_CONTEXT,),
-        elements=elements_of(place.elements, symbols),
+        elements=elements_of((*place.elements, *(each.part for each in place.corridors)), symbols),
         handovers=tuple(handovers_of(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
     )

@@ -245,7 +245,7 @@ class Maker:
                     CONTEXT,
                     "Corridor",
                     name=f"corridor {k}",
-                    line=self.ring(line),
+                    points=self.ring(line),
                     width=random.uniform(10.0, 20.0),
                     use=use,
                     robotTypes=["steady"] if random.random() < 0.2 else [],

@@ -71,7 +71,7 @@ def place() -> Element:
         corridors=[
             context.Corridor(
                 name="gate",
-                line=[at(20, 20), at(60, 60)],
+                points=[at(20, 20), at(60, 60)],
                 width=10.0,
                 minHeight=10.0,
                 maxHeight=50.0,

@@ -81,8 +81,8 @@ ADDED = {
     "CTX012": ('windDirection="310.0"', 'windDirection="310"'),
 }
 CORRIDOR = """  <corridors name="crest road" width="60.0" minHeight="10.0" maxHeight="50.0">
-    <line xsi:type="mission:GeoCoordinate" latitude="42.5385" longitude="13.3940"/>
-    <line xsi:type="mission:GeoCoordinate" latitude="42.5385" longitude="13.3945"/>
+    <points xsi:type="mission:GeoCoordinate" latitude="42.5385" longitude="13.3940"/>
+    <points xsi:type="mission:GeoCoordinate" latitude="42.5385" longitude="13.3945"/>
     <robotTypes>Camera drone</robotTypes>
   </corridors>
 """

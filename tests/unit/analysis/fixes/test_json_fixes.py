@@ -77,7 +77,7 @@ CORRIDOR = """  "corridors": [
       "name": "crest road",
       "width": 60.0,
       "minHeight": 10.0, "maxHeight": 50.0,
-      "line": [
+      "points": [
         {"$type": "mission:GeoCoordinate", "latitude": 42.5385, "longitude": 13.394},
         {"$type": "mission:GeoCoordinate", "latitude": 42.5385, "longitude": 13.3945}
       ],

@@ -6,7 +6,7 @@ import pytest
 from lxml import etree
 from svg_reading import with_class
 
-from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol
 from mmrs_core.pictures.palette import SYMBOL
 from mmrs_core.pictures.preview.features import elements_of
 from mmrs_core.pictures.preview.map import map_of
@@ -159,3 +159,16 @@ def test_an_outline_that_figures_make_is_drawn_beside_the_coordinates():
     (each,) = elements_of([part(GROUP, position=(0.0, 0.0, 0.0), radius=2.0)], {GROUP: symbol})
     assert each.outlines == (((-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)),)
     assert each.marks == ((0.0, 0.0),)
+
+
+def test_a_corridor_is_drawn_as_its_line_and_what_lies_between_its_sides():
+    points = ((0.0, 0.0, 0.0), (40.0, 0.0, 0.0))
+    gate = Part(
+        (("urn:mmrs:context:1.0", "Corridor"),),
+        {"name": "gate", "points": points, "width": 6.0, "use": "ENTRY"},
+    )
+    (each,) = elements_of([gate], {symbol.metaclass: symbol for symbol in CORE_SYMBOLS})
+    ((outline,), lines) = each.outlines, each.lines
+    assert lines == (((0.0, 0.0), (40.0, 0.0)),)
+    assert {*outline} == {(0.0, 3.0), (40.0, 3.0), (40.0, -3.0), (0.0, -3.0)}
+    assert each.tip == "gate: corridor, width 6, use ENTRY"
