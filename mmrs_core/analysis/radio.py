@@ -54,8 +54,10 @@ class Station:
         return f"relay '{self.name}'" if self.name else "home"
 
 
-def stations_of(home: Position, reach: float, relays: Sequence[Relay]) -> tuple[list[Station], list[str]]:
-    """Return where a robot is in range, home first, and why each other relay has no chain to its home."""
+def stations_of(
+    home: Position, reach: float, relays: Sequence[Relay]
+) -> tuple[list[Station], list[tuple[Relay, str]]]:
+    """Return where a robot is in range, home first, and the relays without a chain to its home, with why."""
     chained = [Relay("", home, reach)]
     left = list(relays)
     for here in chained:
@@ -63,16 +65,14 @@ def stations_of(home: Position, reach: float, relays: Sequence[Relay]) -> tuple[
         chained.extend(reached)
         left = [each for each in left if each not in reached]
     stations = [Station(each.name, each.position, min(reach, each.range)) for each in chained]
-    return stations, [_left_out(each, chained, reach) for each in left]
+    return stations, [(each, _severed(each, chained)) for each in left]
 
 
-def _left_out(relay: Relay, chained: Sequence[Relay], reach: float) -> str:
+def _severed(relay: Relay, chained: Sequence[Relay]) -> str:
     near = min(chained, key=lambda each: dist(each.position, relay.position) - min(each.range, relay.range))
     away, allowed = lengths(dist(near.position, relay.position), min(near.range, relay.range))
-    words = Station(near.name, near.position, reach).words
-    return (
-        f"relay '{relay.name}' is left out: it is {away} from {words}, they reach each other within {allowed}"
-    )
+    words = Station(near.name, near.position, near.range).words
+    return f"it is {away} from {words}, they reach each other within {allowed}"
 
 
 def least_inside(points: Sequence[Position], stations: Sequence[Station]) -> tuple[float, Position, Station]:
@@ -148,7 +148,7 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
         found = _margin(robot, leg, stations, error, placed=bool(relays))
         if leg.move not in worst or found.value < worst[leg.move].value:
             worst[leg.move] = found
-    caveat = "; ".join(left_out)
+    caveat = "; ".join(f"relay '{relay.name}' is left out: {why}" for relay, why in left_out)
     for verdict in judged(RANGE_NAME, robot, "m", worst.values(), motion.gaps):
         yield replace(verdict, caveat=caveat)
 

@@ -295,4 +295,5 @@ def _relay_between(station: Position, points: Floats, needed: float, ground: flo
 
 
 def _listed(names: Iterable[str]) -> str:
-    return ", ".join(f"relay '{name}'" for name in names)
+    known = [f"'{name}'" for name in names]
+    return f"relay{'s' if len(known) > 1 else ''} {', '.join(known)}"

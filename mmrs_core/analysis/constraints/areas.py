@@ -1,4 +1,4 @@
-"""Areas, obstacles and the environment of a context."""
+"""Areas, obstacles, relays and the environment of a context."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ import shapely
 
 from mmrs_core.analysis.constraints.findings import CONTEXT, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, sketch_of
+from mmrs_core.analysis.radio import stations_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.features import child, number
-from mmrs_core.languages.element import Element
+from mmrs_core.grounding.features import child, children, number
+from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import AreaUse
+from mmrs_core.scene.relays import RELAY, Relay
 
 
 def _upside_down(element: Element, models: ModelSet) -> Iterator[Finding]:
@@ -99,6 +101,27 @@ def _too_cold_or_hot(environment: Element, models: ModelSet) -> Iterator[Finding
 
 _SWAP = "swap them, or leave out the one that is not known"
 
+
+def _severed_relays(context: Element, models: ModelSet) -> Iterator[Finding]:
+    """Find the relays of which no chain leads to the home of any robot whose range is known."""
+    positions, relays = sketch_of(models).ground.positions, dict[Relay, Element]()
+    for each in children(context, "elements"):
+        at, range = child(each, "position"), number(each, "range")
+        if is_kind(each, *RELAY) and at is not None and at in positions and range is not None and range > 0.0:
+            relays[Relay(label_of(each), positions[at], range)] = each
+    severed: dict[Relay, str] | None = None
+    for robot in sketch_of(models).robots:
+        reach = number(robot.type, "communicationRange") if robot.type is not None else None
+        if robot.home is None or reach is None:
+            return
+        found = dict(stations_of(robot.home, reach, list(relays))[1])
+        severed = {each: why for each, why in (severed or found).items() if each in found}
+        if not severed:
+            return
+    for relay, why in (severed or {}).items():
+        yield finding(relays[relay], f"no chain of relays leads from it to the home of a robot: {why}")
+
+
 CONSTRAINTS = (
     Constraint(
         "CTX007",
@@ -135,6 +158,14 @@ CONSTRAINTS = (
         (CONTEXT, "Context"),
         _narrow_emergency,
         "draw it larger or farther from what robots keep from, or make its safetyDistance smaller",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "CTX021",
+        "From every relay a chain leads to the home of a robot.",
+        (CONTEXT, "Context"),
+        _severed_relays,
+        "move the relay nearer, or put another one in between",
         Severity.WARNING,
     ),
     Constraint(

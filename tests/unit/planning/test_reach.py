@@ -5,14 +5,15 @@ from itertools import pairwise
 from math import dist
 
 import pytest
-from plain_scenes import box, robot
+from plain_scenes import box, road, robot, scene
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.corridors import Corridors
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import reach_of, remedies_for
+from mmrs_core.planning.travel import Spaces
 from mmrs_core.scene import Corridor, Part, Stroke
-from mmrs_core.scene.relays import Relay
+from mmrs_core.scene.relays import RELAY, Relay, relays_of
 
 HOME = (0.0, 0.0, 0.0)
 HILL = Relay("hill", (90.0, 0.0, 0.0), 100.0)
@@ -116,3 +117,26 @@ def test_a_corridor_out_of_range_is_refused_with_the_nearest_station():
         "no corridor leads it in: corridor 'canyon' is out of range:"
         " 144.57 m from home at (120.0, 80.0, 10.0), its radio reaches 100.00 m"
     )
+
+
+def team(*robots, **features):
+    works = {"t": road((50.0, 0.0, 5.0), (60.0, 0.0, 5.0))}
+    return Spaces(scene(robots, works, **features))
+
+
+def test_robots_that_are_in_range_wherever_they_may_go_share_a_space():
+    a, b = one(range=500.0), one(range=500.0, home=(5.0, 0.0, 0.0))
+    shared = team(a, b)
+    assert shared.of(a) is shared.of(b)
+    assert shared.of(a).reach is None
+    wall = box("wall", 300.0, 0.0, 310.0, 600.0)
+    apart = team(a, b, areas=[wall])
+    assert apart.of(a) is not apart.of(b)
+    assert apart.of(a).anywhere is apart.of(b).anywhere
+    assert team(a, transit_altitude=600.0).of(a).reach is not None
+
+
+def test_relays_of_types_that_plug_ins_add_count_too():
+    boat = Part((("urn:boats", "Boat"), RELAY), {"name": "tug", "position": (90.0, 0.0, 0.0), "range": 80.0})
+    mooring = Part((("urn:boats", "Mooring"),), {"name": "m", "position": (0.0, 0.0, 0.0), "range": 80.0})
+    assert relays_of([mooring, boat]) == (Relay("tug", (90.0, 0.0, 0.0), 80.0),)
