@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
-from itertools import groupby, pairwise
+from itertools import pairwise
 from math import dist, hypot, inf
 from typing import TypeAlias
 
@@ -319,14 +319,17 @@ class _Walk:
 def _moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:
     """Yield the legs of a route, upright and level ones in a row together.
 
-    A robot kind may make one move of these, during which the time at the corner is unknown.
+    A robot kind may make one move of these, during which the time at the corner is unknown. Of two level
+    legs, or of two upright ones, none does: their corner ends a move.
     """
-    for _, run in groupby(enumerate(legs), key=lambda pair: pair[0] if _slopes(*pair[1]) else -1):
-        joined = [leg for _, leg in run]
-        if len(joined) == 1 or not any(_upright(*leg) for leg in joined):
-            yield from joined
-        else:
-            yield (joined[0][0], *(two for _, two in joined))
+    run: list[tuple[Position, Position]] = []
+    for leg in legs:
+        if run and (_slopes(*run[-1]) or _slopes(*leg) or _upright(*run[-1]) == _upright(*leg)):
+            yield (run[0][0], *(two for _, two in run))
+            run = []
+        run.append(leg)
+    if run:
+        yield (run[0][0], *(two for _, two in run))
 
 
 def _upright(one: Position, two: Position) -> bool:

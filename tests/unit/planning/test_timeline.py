@@ -8,7 +8,7 @@ from plain_scenes import CRAWLER, control, photo, road, robot, scene, visit, wit
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.timeline import HomeRelation, timelines_of
-from mmrs_core.scene import Await, Look, Policy
+from mmrs_core.scene import Await, Launch, Look, Plan, Policy, RobotPlan, Transit
 from mmrs_core.scene.robots import BACK_SECONDS
 from mmrs_runtime.timing import LegTiming
 
@@ -164,3 +164,10 @@ def test_robots_that_wait_for_nobody_in_the_plan_are_an_error():
     waiting = replace(found.robots[0], steps=(Await(0.0, 0.0, "a", ("never",)), *found.robots[0].steps))
     with pytest.raises(InternalError, match="wait for each other"):
         timelines_of(replace(found, robots=(waiting,)), {"r1": whole.robots[0]})
+
+
+def test_two_level_legs_in_a_row_are_two_rides_whatever_comes_after_them():
+    route = ((0.0, 0.0, 45.0), (100.0, 0.0, 45.0), (100.0, 90.0, 45.0), (100.0, 90.0, 25.0))
+    steps = (Launch(0.0, 20.0, "a", (0.0, 0.0, 0.0), 45.0), Transit(20.0, 60.0, "a", route))
+    rides = timelines_of(Plan((RobotPlan("r1", steps),), 60.0, {}, {}), {"r1": SWIFT})["r1"].rides
+    assert [ride.points for ride in rides if len(ride.points) > 1][1:] == [route[:2], route[1:]]
