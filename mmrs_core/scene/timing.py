@@ -231,7 +231,7 @@ class Rates:
     def settling(self, start: Position, end: Position) -> float:
         """Return the seconds that a leg takes longer as it ends with a stop, which is not passed."""
         seconds, fastest = self._stopping(start, end)
-        return self.share * max(0.0, self._lag(seconds, start, end) + self.timing.settled(fastest))
+        return self.share * max(0.0, self._lag(seconds, start, end) + self.timing.settled(fastest, seconds))
 
     def eased(self, start: Position, end: Position, entering: float = 0.0) -> float:
         """Return the fewest seconds of a leg whose ends are passed.
@@ -277,7 +277,8 @@ class Rates:
             return self._stopping(start, end)[0]
         if self.bound > 0:
             seconds, fastest = _stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
-            return seconds + self._lag(seconds, start, end) + max(0.0, self.timing.settled(fastest))
+            settled = self.timing.settled(fastest, seconds)
+            return seconds + self._lag(seconds, start, end) + max(0.0, settled)
         still = min(timing.still, speed)
         if speed <= timing.still:
             length -= min(length, timing.acceptance)
@@ -287,7 +288,7 @@ class Rates:
         return max(0.0, seconds - sum(each for each, _ in ends))
 
     def _straight(self, start: Position, end: Position, push: Push | None = None) -> float:
-        if -LEVEL <= end[2] - start[2] <= LEVEL and not self.timing.lag:
+        if -LEVEL <= end[2] - start[2] <= LEVEL and not self.timing.lag and not self.timing.trailing:
             length = hypot(end[0] - start[0], end[1] - start[1])
             if length <= 0.0:
                 return 0.0
@@ -300,7 +301,8 @@ class Rates:
         seconds, fastest = self._stopping(start, end)
         if seconds <= 0.0:
             return seconds
-        return max(0.0, seconds + self._lag(seconds, start, end, push) + self.timing.settled(fastest))
+        lag = self._lag(seconds, start, end, push)
+        return max(0.0, seconds + lag + self.timing.settled(fastest, seconds))
 
     def _lag(self, seconds: float, start: Position, end: Position, push: Push | None = None) -> float:
         """Return how much longer a leg takes that would take so long, seconds."""
@@ -402,6 +404,8 @@ def _speeding(speed: float, acceleration: float, jerk: float) -> float:
 
 def _reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, float]:
     """Return the seconds and metres in which a robot that speeds up from a stop first is so fast."""
+    if acceleration == inf:
+        return 0.0, 0.0
     bend = acceleration / jerk if jerk < inf else 0.0
     if bend > 0.0 and 2.0 * speed <= acceleration * bend:
         seconds = sqrt(2.0 * speed / jerk)

@@ -6,10 +6,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import exp, inf, log
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
+
+RESTING = 0.3
+"""Metres from its set-point within which a robot that trails it is as slow as one that stands still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +41,10 @@ class LegTiming:
         overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
             speed, that is, seconds.
         returning: metres per second at which it comes back then.
+        trailing: seconds by which it trails a set-point that moves along the leg at the commanded speed; what
+            is left as that stops becomes less by e in each. 0: it takes the leg by itself.
+        swinging: seconds in which it comes to thrust against its drag then, and so goes beyond its target.
+        waiting: seconds within the acceptance after which it counts as settled then, however it moves.
         spread: by which share legs take longer or shorter than expected.
         reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
@@ -66,6 +73,9 @@ class LegTiming:
     keeps_acceleration: bool = True
     overshoot: float = 0.0
     returning: float = 0.63
+    trailing: float = 0.0
+    swinging: float = 1.0
+    waiting: float = inf
     spread: float = 0.0
     reporting: float = 0.0
     shunts_within: float = inf
@@ -78,13 +88,31 @@ class LegTiming:
         """Return the level deceleration, metres per second squared."""
         return self.acceleration if self.deceleration is None else self.deceleration
 
-    def settled(self, fastest: float) -> float:
+    def settled(self, fastest: float, seconds: float = inf) -> float:
         """Return the seconds after the end of a leg of a largest speed until it is reported as done.
 
-        A robot that has gone beyond its target comes back.
+        A robot that has gone beyond its target comes back; one that trails its set-point comes near.
+
+        Args:
+            fastest: metres per second.
+            seconds: that the leg takes until its end.
         """
+        if self.trailing > 0.0:
+            return self._come_to_rest(fastest, seconds)
         beyond = self.overshoot * fastest if self.overshoot > 0.0 else 0.0
         return self.settling + ((beyond - SETTLED) / self.returning if beyond > SETTLED else 0.0)
+
+    def _come_to_rest(self, fastest: float, seconds: float) -> float:
+        """Return the seconds from the stop of a set-point until a robot that trails it is settled there.
+
+        It comes near, goes beyond, and back; unless that is far, it need not be still once it has waited.
+        """
+        behind = self.trailing * fastest * (1.0 - exp(-seconds / self.trailing))
+        beyond = self.overshoot * fastest * (1.0 - exp(-seconds / self.swinging))
+        still = self.settling + self.trailing * log(max(1.0, behind / RESTING)) + beyond / self.returning
+        if beyond > self.acceptance:
+            return still
+        return min(still, self.waiting + self.trailing * log(max(1.0, behind / self.acceptance)))
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.

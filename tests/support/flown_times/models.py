@@ -24,7 +24,7 @@ from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.scene import Device, Kinematics, Name, Position, Robot, Scene
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
-from mmrs_mavlink.plugin.plans.items import PlanItem
+from mmrs_mavlink.plugin.plans.items import PlanItem, Row, rows_of
 
 ACCEPTANCE = {"rover-arcs-acceptance-1": 1.0}
 """Metres at which places counted as reached on flights for which ``--acceptance`` was given."""
@@ -132,6 +132,10 @@ class Modelled:
         """Return the items of the robot's mission."""
         (items, *_) = sorties_of(context_of(self.robot, self._target(uploaded=False)))
         return items
+
+    def rows(self) -> tuple[Row, ...]:
+        """Return the items of the robot's mission as files hold them."""
+        return rows_of(context_of(self.robot, self._target(uploaded=False)), self.items())
 
     def estimates(self, *, uploaded: bool) -> dict[str, Estimate]:
         """Return how long each move takes but charging, which an operator ends; `uploaded`: as a mission."""

@@ -9,8 +9,6 @@ Other parameters, such as WPNAV_ACCEL, make other figures: robot types state the
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from mmrs_runtime.timing import AutopilotTiming, LegTiming
 
 HEARTBEATS = 2.0
@@ -163,24 +161,23 @@ with the vehicle at rest within 0.05 m of the target: by 0.05 + (v - PSC_POSXY_P
 stops it where its speed w is less than that, until PSC_VELXY_I has moved the vehicle. Legs of 1 m took 22 to
 31 s longer, of 2 m 12 to 17 s, and of 5 m 3 s; one of 1 m further none."""
 
-_PX4_STEP = LegTiming(
-    acceleration=3.0,
-    deceleration=1.5,
-    jerk=4.0,
-    speed=12.0,
-    climb=3.0,
-    descent=1.5,
-    corner_radius=0.0,
-    acceptance=1.5,
-    settling=2.2,
-    overshoot=0.31,
-    returning=0.5,
-    spread=0.45,
-    reporting=10.0,
-)
-
 PX4_COPTER = AutopilotTiming(
-    step=_PX4_STEP,
+    step=LegTiming(
+        speed=12.0,
+        climb=3.0,
+        descent=1.5,
+        corner_radius=0.0,
+        acceptance=1.5,
+        settling=1.1,
+        keeps_acceleration=False,
+        overshoot=0.34,
+        returning=0.4,
+        trailing=1.05,
+        swinging=4.85,
+        waiting=4.1,
+        spread=0.45,
+        reporting=10.0,
+    ),
     mission=LegTiming(
         acceleration=3.0,
         jerk=4.0,
@@ -193,11 +190,20 @@ PX4_COPTER = AutopilotTiming(
         spread=0.4,
         reporting=5.0,
     ),
-    upright=replace(_PX4_STEP, climb=1.5, settling=0.0),
-    launch=6.3,
-    recovery=7.0,
-    noticing=2.5,
-    guiding=2.0,
+    upright=LegTiming(
+        acceleration=3.0,
+        deceleration=1.5,
+        jerk=4.0,
+        climb=1.5,
+        descent=1.5,
+        corner_radius=0.0,
+        spread=0.6,
+        reporting=10.0,
+    ),
+    launch=5.8,
+    recovery=8.2,
+    noticing=2.0,
+    guiding=2.4,
     landing_rate=0.7,
     landing_height=6.9,
     turn_rate=45.0,
@@ -205,14 +211,18 @@ PX4_COPTER = AutopilotTiming(
 """MPC_ACC_HOR, MPC_JERK_AUTO, MPC_XY_VEL_MAX, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_TKO_SPEED,
 MPC_LAND_SPEED and MPC_YAWRAUTO_MAX; COM_DISARM_LAND is two of the seconds of recovery. Between MPC_LAND_ALT1
 (10 m) and MPC_LAND_ALT2 (5 m) it descends ever more slowly, from MPC_Z_V_AUTO_DN to MPC_LAND_SPEED: that
-takes as long as if it were slow from 6.9 m on. From 12 m, 21.5 s are expected; of 14 landings in its
-simulation nine took 18 to 22 s, and five 25 to 30 s: the height that it estimates near the ground wanders.
+takes as long as if it were slow from 6.9 m on. The rest of the recovery is its land detector: it wants the
+estimated climb within LNDMC_Z_VEL_MAX, 0.25 m/s, while that of its simulation wanders by 0.3 to 0.5 m/s on
+the ground. From 12 m, it touched the ground after 12 to 16 s; there it stood for 5 to 18 s.
 
-Leg by leg it goes 0.8 to 1.8 m beyond a target at 5.2 to 5.9 m/s, 2.6 m at 9.8 m/s, and comes back at less
-than 0.5 m/s. It counts as settled once it has been within 1.5 m for 6 s (``vehicles/px4.py``): after 1 to
-5 s at 2 m/s, 3 to 9 s at 5 m/s, and 4 to 8 s at 8 m/s. An earlier driver waited for its acceptance and
-0.3 m/s in any case, for up to 17.5 s: the speed that it estimates wanders by 0.9 m/s. A first leg begins 2 s
-late, since OFFBOARD wants set-points before (guiding).
+Leg by leg its set-point goes at the commanded speed from the first to the last metre (``vehicles/px4.py``),
+and its own controllers are linear (``PositionControl.cpp``). So it trails by 1 / MPC_XY_P, 0.95 per second;
+and since MPC_XY_VEL_I_ACC has come to hold it against its drag by then, it goes beyond the target, which is
+left slowly. The overshoot and its time constant are those of the drag of its simulation, 1 N per m/s and
+kilogram, from which 0.9 m at 3 m/s, 1.2 to 1.9 m at 5 m/s and 2.5 m at 8 m/s follow, and were measured.
+It counts as settled once it has been within 1.5 m for 4 s, since it may estimate all that time that it moves.
+It makes no more than 9.8 m/s there. A first leg begins 2.4 s late, since OFFBOARD wants set-points before
+(guiding).
 
 On missions an item is over within NAV_ACC_RAD. It brakes early for its jerk
 (``computeMaxSpeedFromDistance``, ``TrajMath.hpp``), which counts as settling. The last leg of a mission was

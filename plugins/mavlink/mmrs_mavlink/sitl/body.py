@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import cos, hypot, inf, radians, sin, sqrt
+from math import cos, exp, hypot, inf, radians, sin, sqrt
 
 from mmrs_runtime.timing import LegTiming
 
@@ -24,8 +24,9 @@ SLOW, LAGGING = 0.3, 0.085
 """Speed below which it no longer aims beyond a target; and seconds of its overshoot that it does not aim at,
 since it goes so far beyond what it aims at."""
 
-UNSTEADY = 1.0
-"""Seconds of settling from which a vehicle comes back slowly that has gone beyond its target."""
+THRUSTING = 1.4
+"""Acceleration by which a vehicle that trails its set-point answers each metre per second that it lacks: less
+than MPC_XY_VEL_P_ACC, since it has to tilt first."""
 
 DRIVING = 2.5
 """Acceleration, metres per second squared, with which it approaches commanded speeds."""
@@ -42,6 +43,7 @@ class CurvedLeg:
         path: from its start to its end, metres. length: of it.
         elapsed: seconds since its start; less than 0: it begins later.
         duration: seconds until its end. ramp: seconds to its full speed.
+        lacks: share of the thrust against the drag of its hull that it lacks at its start.
     """
 
     path: Vector
@@ -52,6 +54,7 @@ class CurvedLeg:
     elapsed: float = 0.0
     duration: float = 0.0
     ramp: float = 0.0
+    lacks: float = 0.0
 
     def __post_init__(self) -> None:
         if self.length < self.speed * self._ramp_to(self.speed):
@@ -109,7 +112,7 @@ class Body:
         curved: whether it takes legs as S-curves. figures: how it takes them, or else approaches its target.
         radius: metres from a corner within which it passes.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
-        rested: seconds for which it has stood at the end of its last leg.
+        rested: seconds since the end of its last leg; less than 0: until then.
     """
 
     figures: LegTiming
@@ -131,12 +134,12 @@ class Body:
     _legs: list[CurvedLeg] = field(default_factory=list)
     _fastest: float = 0.0
     """Largest speed since it last stood still."""
-    _slowed_at: Vector | None = None
-    """The target at which it has slowed down."""
     _start: Vector = STILL
     """Where the first of its legs begins."""
     _goal: Vector | None = None
     """Where the last of its legs ends."""
+    _push: Vector = STILL
+    """Share of the thrust against its drag at the commanded speed that it has built up on its last leg."""
 
     def advance(self, seconds: float) -> None:
         """Move for that long."""
@@ -192,25 +195,45 @@ class Body:
         if not self._legs or self._goal not in (target, self.onward):
             if self.distance_to(target) < CLOSE:
                 self.velocity = self._acceleration = STILL
-                self.rested += step
+                self.rested = max(0.0, self.rested) + step
                 return True
             if self.pace > STANDING:
                 return False
             self._legs, self._start, self._goal = [self._leg(self.position, target)], self.position, target
             self._legs[0].elapsed = -self.figures.starting
         self._begin_turn(target)
+        rate = 1.0 / (1.0 + max(map(self._slowness, self._legs)))
         for leg in self._legs:
-            leg.elapsed += step
-        self.rested = 0.0
+            leg.elapsed += step * rate
+        self.rested = -self._legs[-1].left
         while self._legs and self._legs[0].left <= 0.0:
+            self._push = self._pushed(self._legs[0])
             self._start = plus(self._start, self._legs.pop(0).path, 1.0)
         position, self.velocity, self._acceleration = self._start, STILL, STILL
         for leg in self._legs:
             distance, speed = leg.at(leg.elapsed)
             position = plus(position, leg.path, distance / leg.length)
-            self.velocity = plus(self.velocity, leg.path, speed / leg.length)
+            self.velocity = plus(self.velocity, leg.path, rate * speed / leg.length)
         self.position = position
         return True
+
+    def _slowness(self, leg: CurvedLeg) -> float:
+        """Return how much longer a second of a leg takes, whose curve waits while thrust is built up."""
+        lag, within = self.figures.lag, self.figures.lag_within
+        return leg.lacks * lag / within * exp(-max(0.0, leg.elapsed) / within)
+
+    def _pushed(self, leg: CurvedLeg) -> Vector:
+        """Return the push that is left after a leg; its drag grows as its speed squared."""
+        level = hypot(*leg.path[:2])
+        if not level or not self.figures.lag:
+            return self._push
+        drag = self._drag(leg)
+        share = drag - (drag - _along(leg, self._push)) * exp(-leg.duration / self.figures.lag_within)
+        return (leg.path[0] * share / level, leg.path[1] * share / level, 0.0)
+
+    def _drag(self, leg: CurvedLeg) -> float:
+        """Return the largest drag on a leg as a share of that at the commanded speed."""
+        return (leg.speed * hypot(*leg.path[:2]) / leg.length / min(self.speed, self.figures.speed)) ** 2
 
     def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
         path = plus(end, start, -1.0)
@@ -221,7 +244,10 @@ class Body:
             steep = length / abs(path[2])
             speed = min(speed, steep * self._rate(path[2]))
             acceleration = min(acceleration, steep * (figures.vertical_acceleration or inf))
-        return CurvedLeg(path, length, speed, acceleration, figures.jerk)
+        leg = CurvedLeg(path, length, speed, acceleration, figures.jerk)
+        if figures.lag and path[:2] != (0.0, 0.0):
+            leg.lacks = max(0.0, 1.0 - self._drag(leg) * _along(leg, self._push))
+        return leg
 
     def _rate(self, rise: float) -> float:
         """Return the largest vertical speed."""
@@ -242,11 +268,13 @@ class Body:
     def _approach(self, target: Vector | None, step: float) -> None:
         """Approach a target, or brake, with limited acceleration and jerk."""
         self._legs.clear()
-        figures, path = self.figures, plus(self._aim(target), self.position, -1.0)
+        figures = self.figures
+        if figures.trailing:
+            self._trail(target or self.position, step)
+            return
+        path = plus(self._aim(target), self.position, -1.0)
         level, upwards = figures.acceleration, figures.vertical_acceleration or figures.acceleration
-        returns = target is not None and target == self._slowed_at and figures.settling >= UNSTEADY
-        speed = min(self.speed, figures.returning) if returns else self.speed
-        pace = min(_root(hypot(*path[:2]), level, figures.jerk), speed)
+        pace = min(_root(hypot(*path[:2]), level, figures.jerk), self.speed)
         rate = min(_root(abs(path[2]), upwards, figures.jerk), self._rate(path[2]))
         part = pace / max(hypot(*path[:2]), CLOSE)
         wanted = (path[0] * part, path[1] * part, rate if path[2] > 0.0 else -rate)
@@ -261,13 +289,21 @@ class Body:
         self.velocity = plus(self.velocity, self._acceleration, step)
         self.position = plus(self.position, self.velocity, step)
 
+    def _trail(self, target: Vector, step: float) -> None:
+        """Trail a set-point as a PX4 does, whose controllers of position and velocity are linear."""
+        behind, trailing = plus(target, self.position, -1.0), self.figures.trailing
+        rate = self._rate(behind[2])
+        up = max(-rate, min(rate, behind[2] / trailing))
+        part = 1.0 / max(trailing, hypot(*behind[:2]) / max(self.speed, CLOSE))
+        error = plus((behind[0] * part, behind[1] * part, up), self.velocity, -1.0)
+        self.velocity = plus(self.velocity, error, min(1.0, THRUSTING * step))
+        self.position, self._acceleration = plus(self.position, self.velocity, step), STILL
+
     def _aim(self, target: Vector | None) -> Vector:
         """Return what it heads for: a place beyond a target, by its overshoot, until it has slowed down."""
         if target is None or target[:2] == self.position[:2]:
             return target or self.position
         (north, east, _), pace = self.velocity, hypot(*self.velocity[:2])
-        if pace <= SLOW < self._fastest:
-            self._slowed_at = target
         self._fastest = max(self._fastest, pace) if pace > SLOW else 0.0
         beyond = max(0.0, self.figures.overshoot - LAGGING) * self._fastest
         return plus(target, (north, east, 0.0), beyond / pace) if beyond > 0.0 else target
@@ -289,6 +325,12 @@ class Body:
         left = (self.wanted_heading - self.heading + 180.0) % 360.0 - 180.0
         limit = self.turn_rate * step
         self.heading = (self.heading + max(-limit, min(limit, left))) % 360.0
+
+
+def _along(leg: CurvedLeg, push: Vector) -> float:
+    """Return how much of a push is along a leg."""
+    level = hypot(*leg.path[:2])
+    return (leg.path[0] * push[0] + leg.path[1] * push[1]) / level if level else 0.0
 
 
 def _bisected(low: float, high: float, below: Callable[[float], bool]) -> float:

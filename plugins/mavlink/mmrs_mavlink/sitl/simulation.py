@@ -249,7 +249,7 @@ def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     pilot.face(place)
     if body.onward is not None:
         return body.passes_target()
-    settles = max(0.0, body.figures.settling - body.figures.starting - HOLD)
+    settles = body.figures.settling - body.figures.starting - HOLD
     if not pilot.held and (body.distance_to(place) > CLOSE or body.rested < settles):
         return False
     pilot.held += seconds

@@ -26,6 +26,9 @@ LOCATED, LOST = 0x33F, 0xA7
 TUMBLING = radians(60.0)
 """Lean of an ArduCopter 4.7-dev in simulation that falls with one of its four motors off."""
 
+UNSTEADY = 0.35
+"""Metres per second that a PX4 estimates in the air in OFFBOARD at least: noise of its own simulation."""
+
 SECTOR_FREE, UNKNOWN = 6_001, 65_535
 GPS, FENCE_BIT, PREARM = 0x20, 0x0010_0000, 0x1000_0000
 SENSORS = 0x0200_002F
@@ -62,12 +65,19 @@ def _heartbeat(pilot: SimulatedAutopilot) -> Message:
     )
 
 
+def _velocity(pilot: SimulatedAutopilot) -> Vector:
+    """Return the velocity that it estimates."""
+    north, east, climb = pilot.body.velocity
+    unsteady = pilot.px4 and pilot.airborne and pilot.mode_name == "guided"
+    return (max(north, UNSTEADY) if unsteady and pilot.body.pace < UNSTEADY else north, east, climb)
+
+
 def _global_position(pilot: SimulatedAutopilot) -> Message | None:
     """Return its position; without one, ArduPilot reports 0 degrees of both, and PX4 nothing."""
     if not pilot.ready and pilot.px4:
         return None
     up = pilot.settings.altitude + pilot.body.position[2]
-    north, east, climb = pilot.body.velocity
+    north, east, climb = _velocity(pilot)
     return message(
         "global_position_int",
         time_boot_ms=milliseconds(pilot),
@@ -84,7 +94,7 @@ def _global_position(pilot: SimulatedAutopilot) -> Message | None:
 def _local_position(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.ready:
         return None
-    (north, east, up), (v_north, v_east, v_up) = pilot.body.position, pilot.body.velocity
+    (north, east, up), (v_north, v_east, v_up) = pilot.body.position, _velocity(pilot)
     now = milliseconds(pilot)
     return mavlink.MAVLink_local_position_ned_message(now, north, east, -up, v_north, v_east, -v_up)
 

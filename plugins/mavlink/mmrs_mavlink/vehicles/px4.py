@@ -40,7 +40,7 @@ LEAST_PAUSE = 0.01
 AHEAD_SECONDS = 1.5
 """For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
 
-WANDER, WANDERING = 1.5, 6.0
+WANDER, WANDERING = 1.5, 4.0
 """Metres from the target, and seconds within these, from which it has settled whatever speed it estimates."""
 
 FRESH_SECONDS = 1.0

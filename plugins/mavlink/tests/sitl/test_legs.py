@@ -86,22 +86,29 @@ def test_a_rover_on_a_mission_sets_out_as_late_as_real_ones():
     assert body.position[1] > 0.1
     planned = Rates(1.5, 1.0, 1.0, figures).from_stop_to_stop((0.0, 0.0, 0.0), place)
     seconds = figures.starting + 1.0
-    while not body.rested:
+    while body.rested <= 0.0:
         body.advance(STEP)
         seconds += STEP
     assert seconds == pytest.approx(planned - figures.settling + figures.starting, abs=0.2)
 
 
-@pytest.mark.parametrize("length", [15.0, 30.0, 100.0])
-def test_a_px4_that_is_commanded_leg_by_leg_settles_as_long_as_is_planned(length):
+@pytest.mark.parametrize(
+    ("length", "speed", "settles"), [(30.0, 5.0, 5.4), (30.0, 3.0, 4.9), (15.0, 2.0, 4.4)]
+)
+def test_a_px4_that_trails_a_set_point_is_near_as_soon_as_is_planned(length, speed, settles):
+    """Measured with PX4 1.15: 1.4 and 0.9 s after its set-point has stopped, it is within 1.5 m."""
     figures = PX4_MULTICOPTER.pacing.step
-    body = Body(figures, (0.0, 0.0, 10.0), speed=5.0)
-    body.target, seconds = (length, 0.0, 10.0), 0.0
-    while body.distance_to(body.target) > 0.5 or body.pace > 0.3:
-        body.advance(STEP)
+    body = Body(figures, (0.0, 0.0, 10.0), speed=12.0)
+    seconds = near = 0.0
+    while near < figures.waiting:
         seconds += STEP
-    planned = Rates(5.0, 3.0, 1.5, figures).from_stop_to_stop((0.0, 0.0, 10.0), body.target)
-    assert seconds == pytest.approx(planned, rel=0.12)
+        body.target = (min(length, speed * seconds), 0.0, 10.0)
+        body.advance(STEP)
+        there = body.distance_to((length, 0.0, 10.0)) <= figures.acceptance and seconds >= length / speed
+        near = near + STEP if there else 0.0
+    planned = Rates(speed, 3.0, 1.5, figures).from_stop_to_stop((0.0, 0.0, 10.0), (length, 0.0, 10.0))
+    assert seconds == pytest.approx(planned, abs=0.6)
+    assert seconds - length / speed == pytest.approx(settles, abs=0.6)
 
 
 @pytest.mark.parametrize(

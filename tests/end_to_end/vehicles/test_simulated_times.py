@@ -1,0 +1,80 @@
+"""Simulated vehicles take as long as the same models are planned to take, and as recorded flights took.
+
+MMRS_RECORDED_FLIGHTS is a folder of recorded flights, as in `test_flown_times.py`; without it, simulated
+missions are compared with the plan alone.
+"""
+
+import os
+from pathlib import Path
+from shutil import copytree, ignore_patterns
+
+import pytest
+from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
+from flown_times.simulated import simulate_mission, simulate_steps
+from real_flights.table import FLIGHTS
+
+FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
+MISSIONS = {"carbon-dioxide-auto": "Alba", "rover-long-legs-auto": "Badger"}
+"""Recorded missions, and who flew each."""
+
+STEPS = ("handwritten-guided", "lawn-auto", "rover-long-legs-guided", "carbon-dioxide-guided")
+"""Recorded flights that were commanded step by step: copters and a rover."""
+
+recorded = pytest.mark.skipif(not FOLDER, reason="MMRS_RECORDED_FLIGHTS is no folder of recorded flights")
+
+
+def as_recorded(name, tmp_path):
+    """Return a folder with the models of a recorded flight, and none of its logs."""
+    folder = copytree(Path(FOLDER) / name, tmp_path / name, ignore=ignore_patterns("logs", "*.gz"))
+    for file in (folder, *folder.rglob("*")):
+        file.chmod(0o755)
+    return folder
+
+
+def faults(flight, simulated):
+    """Return in which robots a recorded flight and a simulated one differ by more than they may."""
+    found = []
+    for one, two in zip(compared(flight), compared(simulated), strict=True):
+        both = [(one.legs[move][1], two.legs[move][1]) for move in one.legs if move in two.legs]
+        real, imitated = (sum(each) for each in zip(*both, strict=True))
+        good = sum(abs(b / a - 1.0) <= LEGS_WITHIN for a, b in both)
+        if abs(imitated / real - 1.0) > WITHIN or good < MOST_LEGS * len(both) - 1:
+            found.append(f"{one.robot}: {imitated:.1f} of {real:.1f} s, {good} of {len(both)} legs")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "others"),
+    [
+        ("copter: plan in AUTO", "Alba", 0),
+        ("rover: plan in AUTO", "Badger", 0),
+        ("sub: plan in AUTO", "Nereid", 1),
+        ("PX4: plan in AUTO", "Alba", 0),
+    ],
+)
+def test_a_simulated_mission_takes_what_is_planned(name, robot, others, tmp_path):
+    """`others` are the legs that take others' times: a submarine dives as fast as it can in a mission."""
+    next(flight for flight in FLIGHTS if flight.name == name).models(tmp_path / "models")
+    simulate_mission(tmp_path / "models", robot)
+    (found,) = compared(tmp_path / "models")
+    assert found.whole
+    assert list(found.faults()) == []
+    assert len(found.legs) - found.good_legs <= others
+
+
+@recorded
+@pytest.mark.parametrize("name", MISSIONS)
+def test_a_simulated_mission_takes_what_a_recorded_one_did(name, tmp_path):
+    folder = as_recorded(name, tmp_path)
+    simulate_mission(folder, MISSIONS[name])
+    assert faults(Path(FOLDER) / name, folder) == []
+
+
+@recorded
+@pytest.mark.real_time("faults")
+@pytest.mark.parametrize("name", STEPS)
+def test_simulated_steps_take_what_recorded_ones_did(name, tmp_path):
+    folder = as_recorded(name, tmp_path)
+    arguments = ["--backend-option", "objects=expected"] if name == "handwritten-guided" else []
+    simulate_steps(folder, *arguments, speedup=4.0)
+    assert faults(Path(FOLDER) / name, folder) == []
