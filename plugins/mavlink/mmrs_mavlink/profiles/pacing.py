@@ -175,7 +175,7 @@ PX4_COPTER = AutopilotTiming(
         trailing=1.05,
         swinging=4.85,
         waiting=4.1,
-        spread=0.45,
+        spread=0.5,
         reporting=10.0,
     ),
     mission=LegTiming(

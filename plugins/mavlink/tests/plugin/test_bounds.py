@@ -33,11 +33,17 @@ places = st.tuples(level, level, st.floats(3.0, 40.0))
 
 
 def flown(profile, to: Vector, speed: float) -> float:
-    """Return the seconds in which a simulated vehicle comes to a place, as the driver judges it."""
-    figures = profile.pacing.step
+    """Return the seconds in which a simulated vehicle comes to a place, as the driver judges it.
+
+    One that trails its set-point is given one that moves there at the speed.
+    """
+    figures, length = profile.pacing.step, dist(HERE, to)
     body = Body(figures, HERE, speed=speed, climb=figures.climb, descent=figures.descent)
     body.target, steps = to, 0
     while not (dist(body.position, to) <= ACCEPTANCE and body.pace <= STILL):
+        if figures.trailing and length:
+            part = min(1.0, speed * steps * STEP / length)
+            body.target = tuple(p + part * (q - p) for p, q in zip(HERE, to, strict=True))
         body.advance(STEP)
         steps += 1
         assert steps < 20_000
