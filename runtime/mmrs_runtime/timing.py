@@ -42,7 +42,7 @@ class LegTiming:
             speed, that is, seconds.
         returning: metres per second at which it comes back then.
         trailing: seconds by which it trails a set-point that moves along the leg at the commanded speed; what
-            is left as that stops becomes less by e in each. 0: it takes the leg by itself.
+            is left as that stops becomes less by e in each. 0: it follows none.
         swinging: seconds in which it comes to thrust against its drag then, and so goes beyond its target.
         waiting: seconds within the acceptance after which it counts as settled then, however it moves.
         spread: by which share legs take longer or shorter than expected.
