@@ -100,11 +100,22 @@ def test_a_relay_that_would_do_is_named_with_its_range_and_place():
     assert found == ["a relay of range 93 m at (92, 10, 0)", "a communicationRange of 185 m"]
 
 
-def test_no_relay_is_named_where_one_is_not_enough():
+def test_a_chain_of_relays_is_named_where_one_is_not_enough():
     strokes = (Stroke(((300.0, 0.0, 0.0),)),)
-    assert list(remedies_for(one(), (), 0.0, strokes)) == ["a communicationRange of 300 m"]
+    found = list(remedies_for(one(), (), 0.0, strokes))
+    assert found == [
+        "2 relays of range 100 m at (100, 0, 0) and (200, 0, 0)",
+        "a communicationRange of 300 m",
+    ]
     chain = (Relay("mast", (100.0, 0.0, 0.0), 100.0),)
     assert next(remedies_for(one(), chain, 0.0, strokes)) == "a relay of range 100 m at (200, 0, 0)"
+
+
+def test_no_chain_is_named_where_three_are_not_enough():
+    strokes = (Stroke(((401.0, 0.0, 0.0),)),)
+    assert list(remedies_for(one(), (), 0.0, strokes)) == ["a communicationRange of 401 m"]
+    wide = (Stroke(((0.0, 150.0, 0.0), (250.0, 150.0, 0.0))),)
+    assert list(remedies_for(one(), (), 0.0, wide)) == ["a communicationRange of 292 m"]
 
 
 def test_a_corridor_out_of_range_is_refused_with_the_nearest_station():
