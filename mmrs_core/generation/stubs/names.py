@@ -24,14 +24,9 @@ _SOURCES = {
 """Where a stub imports names from; all others are built into Python."""
 
 
-def module_name(package: Package, taken: Collection[str] = ()) -> str:
-    """Return the name of the module that describes a package; none of the standard library's.
-
-    Args:
-        package: the metamodel.
-        taken: names that other modules have.
-    """
-    return python_name(package.name, {*taken, *sys.stdlib_module_names})
+def module_name(package: Package) -> str:
+    """Return the name of the module that describes a package; none of the standard library's."""
+    return python_name(package.name, sys.stdlib_module_names)
 
 
 def member_names(package: Package) -> Mapping[str, str]:

@@ -19,8 +19,8 @@ from mmrs_runtime.vehicle import Vehicle
 
 MOST_EVENTS = 1000
 """Questions after which a movement is taken for one that never ends."""
-STOPPED_SECONDS = 30.0
-"""For so long a vehicle that has stopped must stay where it is."""
+STILL_SECONDS = 30.0
+"""For so long a vehicle that waits, or has stopped, must stay where it is."""
 
 NO_OPTION = "an option that no vehicle has"
 TO_AND_FRO = program(
@@ -81,7 +81,7 @@ class VehicleConformance(Conformance):
         """The robot holds its pose until the next movement."""
         driven = self._simulated(vehicle)
         driven.wait(0.0)
-        assert driven.state(100.0).position == driven.state(0.0).position
+        assert driven.state(STILL_SECONDS).position == driven.state(0.0).position
 
     @pytest.mark.parametrize("response", ["HOLD", "RETURN", "LAND", "SURFACE", "STOP_THRUST"])
     @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
@@ -96,7 +96,7 @@ class VehicleConformance(Conformance):
         end = _end(driven, when)
         driven.respond(response, end)
         seconds, moves = self.still.get(vehicle.name, (1.0, 0.0))
-        state, later = driven.state(end + seconds), driven.state(end + seconds + STOPPED_SECONDS)
+        state, later = driven.state(end + seconds), driven.state(end + seconds + STILL_SECONDS)
         assert max(state.speed, later.speed) <= moves
         assert dist(later.position, state.position) <= moves
 

@@ -124,16 +124,15 @@ class Adjusted:
         gain: by which the last pictures were brightened, both the same.
     """
 
-    def __init__(self, camera: Camera, bright: float = BRIGHT) -> None:
+    def __init__(self, camera: Camera) -> None:
         self.gain = 1.0
-        self._camera, self._bright = camera, bright
-        self._fresh = True
+        self._camera, self._fresh = camera, True
 
     def pair(self, left: Picture, right: Picture) -> tuple[Picture, Picture]:
         """Return both pictures as detection takes them."""
         left, right = (self._sized(each) for each in (left, right))
         mean = float(left[::_SAMPLED, ::_SAMPLED].mean()) or 1.0
-        wanted = min(max(self._bright / mean, _GAINS[0]), _GAINS[1])
+        wanted = min(max(BRIGHT / mean, _GAINS[0]), _GAINS[1])
         self.gain += (1.0 if self._fresh else _STEP) * (wanted - self.gain)
         self._fresh = False
         one, other = (

@@ -36,7 +36,6 @@ def sheet_of(
     surface: float = 0.0,
     payload: float = 0.0,
     density: float | None = None,
-    heading: float = 0.0,
 ) -> Sheet:
     """Return the data of a vehicle.
 
@@ -46,7 +45,6 @@ def sheet_of(
         surface: height of the water surface above the origin, metres.
         payload: that it carries, kilograms.
         density: of the water, kilograms per cubic metre; None: unknown.
-        heading: at home, degrees.
 
     Raises:
         UnsupportedError: the type lacks data, or they fit no vehicle; lists all.
@@ -72,7 +70,6 @@ def sheet_of(
         max_depth=min(largest_depth(robot_type, payload, water), MOST_DEPTH),
         battery=sum(battery.energy for battery in robot_type.batteries),
         home=(home[1], home[0], max(0.0, surface - home[2])),
-        heading=heading,
         water_density=water,
         devices=tuple(robot_type.devices),
         extra=_extra(tuple(robot_type.devices.values())),

@@ -28,23 +28,23 @@ STRICTER = (2.0, 4.0, 8.0, 16.0, 32.0)
 """Factors of the weights of roll and pitch that are tried until it tilts no further."""
 
 TINY = 1e-6
-"""Weight of thrust itself, so that the wrench is reached with the least thrust."""
+"""Weight of thrust itself, so that the wrench is reached with the least thrust: part of the largest diagonal
+element of the normal equations."""
 
 
-def bounded_least_squares(matrix: Array, wanted: Array, low: Array, high: Array, tiny: float = TINY) -> Array:
-    """Return the x within bounds that makes the squares of ``matrix @ x - wanted``, and tiny of x, least.
+def bounded_least_squares(matrix: Array, wanted: Array, low: Array, high: Array) -> Array:
+    """Return the x within bounds that makes the squares of ``matrix @ x - wanted``, and `TINY` of x, least.
 
     An active-set method (P. B. Stark and R. L. Parker, Bounded-variable least squares, Computational
-    Statistics 10, 1995) on the normal equations; `tiny` makes the solution unique and each step definite.
+    Statistics 10, 1995) on the normal equations; `TINY` makes the solution unique and each step definite.
 
     Args:
         matrix: m by n. wanted: m. low, high: n, low not above high.
-        tiny: positive; part of the largest diagonal element of matrix' matrix.
     """
     hessian = matrix.T @ matrix
     count = len(hessian)
     scale = float(hessian.diagonal().max(initial=0.0)) or 1.0
-    hessian = hessian + tiny * scale * np.eye(count)
+    hessian = hessian + TINY * scale * np.eye(count)
     gradient = matrix.T @ wanted
     x = np.asarray(np.linalg.solve(hessian, gradient), np.float64)
     if np.all(x >= low) and np.all(x <= high):

@@ -69,6 +69,9 @@ def shortest(data_bytes: int, extended: bool = False) -> int:
     return (_EXTENDED if extended else _STANDARD) + 8 * data_bytes + TAIL
 
 
+_WINDOW = 0.1
+"""Seconds over which the load of a bus is measured."""
+
 _ROUNDING = 1e-6
 """Part of a window by which a time may come before it and still count in it: times are rounded."""
 
@@ -176,15 +179,12 @@ def _latest(number: int, messages: Sequence[Message], lengths: Sequence[int], ra
     return waiting + own
 
 
-def measured_load(
-    frames: Iterable[tuple[float, Frame]], bit_rate: int, window: float = 0.1
-) -> MeasuredLoad | None:
+def measured_load(frames: Iterable[tuple[float, Frame]], bit_rate: int) -> MeasuredLoad | None:
     """Return how busy a bus was.
 
     Args:
         frames: with the times in seconds at which they were received, in order.
         bit_rate: that the bus has or, if it is a hub, would have.
-        window: seconds.
 
     Returns:
         None if there are not two frames at different times.
@@ -196,16 +196,16 @@ def measured_load(
         first = time if first is None else first
         last = time
         length = length_of(frame)
-        number = floor((time - first) / window + _ROUNDING)
+        number = floor((time - first) / _WINDOW + _ROUNDING)
         windows[number] = windows.get(number, 0) + length
         count, bits = count + 1, bits + length
         plain += shortest(len(frame.data), frame.extended)
     if first is None or last is None or last <= first:
         return None
-    whole = max(1, floor((last - first) / window + _ROUNDING))
-    shares = sorted(windows.get(each, 0) / (bit_rate * window) for each in range(whole))
+    whole = max(1, floor((last - first) / _WINDOW + _ROUNDING))
+    shares = sorted(windows.get(each, 0) / (bit_rate * _WINDOW) for each in range(whole))
     return MeasuredLoad(
-        count, last - first, window, bits / bit_rate / (last - first),
+        count, last - first, _WINDOW, bits / bit_rate / (last - first),
         _part(shares, 0.5), _part(shares, 0.99), shares[-1], 100.0 * (bits - plain) / plain,
     )  # fmt: skip
 
