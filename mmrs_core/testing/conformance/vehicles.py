@@ -81,7 +81,7 @@ class VehicleConformance(Conformance):
         """The robot holds its pose until the next movement."""
         driven = self._simulated(vehicle)
         driven.wait(0.0)
-        assert driven.state(STILL_SECONDS).position == driven.state(0.0).position
+        self._stands_still(driven, vehicle, 0.0)
 
     @pytest.mark.parametrize("response", ["HOLD", "RETURN", "LAND", "SURFACE", "STOP_THRUST"])
     @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
@@ -95,8 +95,12 @@ class VehicleConformance(Conformance):
         driven.respond(response, when)
         end = _end(driven, when)
         driven.respond(response, end)
+        self._stands_still(driven, vehicle, end)
+
+    def _stands_still(self, driven: Vehicle, vehicle: VehicleFactory, since: float) -> None:
         seconds, moves = self.still.get(vehicle.name, (1.0, 0.0))
-        state, later = driven.state(end + seconds), driven.state(end + seconds + STILL_SECONDS)
+        state = driven.state(since + seconds)
+        later = driven.state(since + seconds + STILL_SECONDS)
         assert max(state.speed, later.speed) <= moves
         assert dist(later.position, state.position) <= moves
 

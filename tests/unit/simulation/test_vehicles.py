@@ -74,6 +74,23 @@ class TestJumper(VehicleConformance):
     plugin = Jumping()
 
 
+class Drifter(Jumper):
+    """A robot that drifts while it waits, and tells where it was last heard of, as real ones do."""
+
+    _now = 0.0
+
+    def state(self, now):
+        self._now = max(self._now, now)
+        return RobotState(self._now, (0.001 * self._now, 0.0, 0.0), 0.0, 0.0, None)
+
+
+def test_a_vehicle_that_drifts_while_it_waits_is_found():
+    drifting = replace(JUMPER, connect=Drifter)
+    kit = type("Drifting", (VehicleConformance,), {"plugin": Jumping(drifting)})()
+    with pytest.raises(AssertionError):
+        kit.test_waiting_ends_never_and_moves_nothing(drifting)
+
+
 def test_a_plugins_vehicle_is_taken_by_its_name():
     assert simulated(Jumping(), backend="jumper").ending.time == SECONDS
 
