@@ -8,7 +8,7 @@ from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.registry import Registry
 from mmrs_core.testing.growth import Growth
-from mmrs_core.testing.kinds import Kinds, all_kinds, fits, kinds_below
+from mmrs_core.testing.kinds import Kinds, all_kinds, fits, kinds_below, kinds_of
 from mmrs_core.testing.strategies import Values
 
 _NO_ELEMENT = "{}#{}: no class that elements can be made of"
@@ -64,7 +64,7 @@ def drafts_of(
     candidates = sorted(_candidates(registry, ns_uri, name), key=lambda each: each.key)
     if not candidates:
         raise ValueError(_NO_ELEMENT.format(ns_uri, name))
-    kinds = Kinds(all_kinds(registry))
+    kinds = kinds_of(tuple(all_kinds(registry)))
 
     @st.composite
     def tree(draw: st.DrawFn) -> Element:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from math import inf
 
 from mmrs_core.languages.datatypes import ECORE, DataType
@@ -131,6 +132,13 @@ def all_kinds(registry: Registry) -> list[Metaclass]:
     return [kind for package in registry.everything for kind in package.metaclasses if kind.implementation]
 
 
+@lru_cache(64)
+def kinds_of(concrete: tuple[Metaclass, ...]) -> Kinds:
+    """Return what concrete classes make possible, worked out once for all strategies that draw of them."""
+    return Kinds(concrete)
+
+
+@lru_cache(256)
 def kinds_below(registry: Registry, *roots: Metaclass) -> Kinds:
     """Return the classes that valid models with such roots can hold.
 
@@ -139,7 +147,7 @@ def kinds_below(registry: Registry, *roots: Metaclass) -> Kinds:
     """
     concrete = all_kinds(registry)
     while True:
-        kinds = Kinds(concrete)
+        kinds = kinds_of(tuple(concrete))
         for root in roots:
             if kinds.height.get(root, inf) == inf:
                 raise ValueError(f"{root.name}: no finite element of it is valid alone")
@@ -152,7 +160,7 @@ def kinds_below(registry: Registry, *roots: Metaclass) -> Kinds:
                     f"{lacking[root].type.name}, which cannot stand inside it"
                 )
         if not lacking:
-            return Kinds(kind for kind in concrete if kind in inside)
+            return kinds_of(tuple(kind for kind in concrete if kind in inside))
         concrete = [kind for kind in concrete if kind not in lacking]
 
 
