@@ -106,13 +106,14 @@ def _crs(crs: str) -> CRS:
 
 @lru_cache(maxsize=64)
 def _transformer(crs: str, latitude: float, longitude: float) -> Transformer:
+    """Return the projection of a frame; its steps are stated here, since PROJ takes long to find them."""
     from pyproj import Transformer
-    from pyproj.crs import ProjectedCRS
-    from pyproj.crs.coordinate_operation import TransverseMercatorConversion
 
-    geographic = _crs(crs).to_2d()
-    touching = TransverseMercatorConversion(
-        latitude_natural_origin=latitude, longitude_natural_origin=longitude, scale_factor_natural_origin=1.0
+    ellipsoid = _crs(crs).ellipsoid
+    assert ellipsoid is not None  # it is geographic
+    flattening = ellipsoid.inverse_flattening
+    figure = f"rf={flattening!r}" if flattening else f"b={ellipsoid.semi_minor_metre!r}"
+    return Transformer.from_pipeline(
+        "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=tmerc "
+        f"+lat_0={latitude:.15g} +lon_0={longitude:.15g} +a={ellipsoid.semi_major_metre!r} +{figure}"
     )
-    local = ProjectedCRS(conversion=touching, geodetic_crs=geographic)
-    return Transformer.from_crs(geographic, local, always_xy=True)

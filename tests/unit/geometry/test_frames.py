@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
-from pyproj import Geod
+from pyproj import CRS, Geod, Transformer
+from pyproj.crs import ProjectedCRS
+from pyproj.crs.coordinate_operation import TransverseMercatorConversion
 
 from mmrs_core.geometry.frames import LocalFrame, known_crs
 
@@ -62,6 +64,16 @@ def test_a_crs_that_is_not_geographic_in_degrees_is_refused(crs, reason):
 def test_an_origin_off_the_earth_is_refused():
     with pytest.raises(ValueError, match="91"):
         LocalFrame("wgs84", 91.0, 0.0)
+
+
+@pytest.mark.parametrize("crs", ["EPSG:4326", "EPSG:4267", "EPSG:4813", "+proj=longlat +R=6371000"])
+def test_a_frame_is_the_projection_that_proj_itself_makes_of_it(crs):
+    geographic = CRS.from_user_input(crs)
+    touching = TransverseMercatorConversion(-33.9, 151.2, scale_factor_natural_origin=1.0)
+    local = ProjectedCRS(conversion=touching, geodetic_crs=geographic)
+    x, y = Transformer.from_crs(geographic, local, always_xy=True).transform([151.2, 151.3], [-33.8, -34.0])
+    found = LocalFrame(crs, -33.9, 151.2).to_local([-33.8, -34.0], [151.2, 151.3])
+    assert found == pytest.approx(np.column_stack([x, y]), abs=1e-8)
 
 
 def test_a_coordinate_that_cannot_be_projected_is_named():
