@@ -91,13 +91,14 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         legs[leg.move].append(leg)
     local = input.program.frame.is_local
     passages = Passages(robot, input.move_kinds, kinematics, local=local)
-    passed, pushes = _passed(robot, passages, legs, kinematics.cruise), _pushes(robot, passages, legs)
+    passed, begun = _passed(robot, passages, legs, kinematics.cruise), _begun(robot, passages, legs)
     gaps = {gap.move: gap for gap in motion.gaps}
     found: dict[int, Duration] = {}
     for index in moves:
         move = robot.moves[index]
         flows = replace(move, flows=index in passed)
-        known = replace(passages.kinematics(move), push=pushes.get(index), entering=passed.get(index, 0.0))
+        push, facing = begun.get(index, (None, None))
+        known = replace(passages.kinematics(move), push=push, facing=facing, entering=passed.get(index, 0.0))
         moving = _least(move) if index in gaps else _moving(input, robot, flows, legs[index], known)
         found[index] = _with_actions(move, moving, robot_type, kinematics.timing)
         if index not in gaps and found[index].whole.high == inf:
@@ -131,20 +132,23 @@ def _passed(
     return found
 
 
-def _pushes(
+def _begun(
     robot: RobotProgram, passages: Passages, legs: Mapping[int, list[MovePath]]
-) -> dict[int, Push | None]:
-    """Return with which push the robot begins those of its moves that it always makes in one order."""
+) -> dict[int, tuple[Push | None, float | None]]:
+    """Return with which push, and looking where, the robot begins those moves that it makes in one order."""
     graph = successors(robot)
     before = reversed_graph(graph)
-    found: dict[int, Push | None] = {}
+    found: dict[int, tuple[Push | None, float | None]] = {}
     index = robot.start
     push: Push | None = STANDING
+    facing: float | None = None
     while index not in found and len(before[index]) <= 1:
-        found[index] = push
+        found[index] = (push, facing)
         paths = legs.get(index, [])
         known = len(paths) == 1 and paths[0].radius == 0.0
-        push = passages.push(robot.moves[index], paths[0].points, push) if known else None
+        move = robot.moves[index]
+        push = passages.push(move, paths[0].points, push) if known else None
+        facing = passages.facing(move, paths[0].points, facing) if known else None
         index = graph[index][0] if len(graph[index]) == 1 else index
     return found
 

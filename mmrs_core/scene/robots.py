@@ -244,11 +244,9 @@ class Kinematics:
 
     @property
     def shunting(self) -> float:
-        """Return the longest time to turn before a leg, seconds; 0 for robots that turn on the spot.
-
-        These turn while they set out, which is not counted.
-        """
-        return 180.0 / self.turn_rate if self.turning_radius > 0.0 else 0.0
+        """Return the longest time to turn before a leg, seconds; 0 where that is while the robot sets out."""
+        turns = self.turning_radius > 0.0 or self.timing.pivots < 180.0
+        return 180.0 / self.turn_rate if turns else 0.0
 
     def turning(self, goal: float | None = None) -> MoveSeconds:
         """Return how long a turn on the spot takes: half a circle at most.
@@ -281,7 +279,7 @@ class Kinematics:
     def rates(self, speed: float | None = None) -> Rates:
         """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""
         wanted = self.cruise if speed is None else min(max(speed, self.slowest), self.fastest)
-        within = self.timing.shunts_within * self.turning_radius if self.turning_radius > 0.0 else 0.0
+        within = self.timing.shunts_within * self.turning_radius if self.turning_radius > 0.0 else inf
         circling = 2.0 * pi * self.turning_radius / wanted if wanted > 0.0 else inf
         return Rates(
             wanted,

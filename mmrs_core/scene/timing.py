@@ -10,7 +10,7 @@ one, as far as the corner's radius allows.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import atan2, ceil, cos, dist, exp, hypot, inf, pi, radians, sin, sqrt
+from math import atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
@@ -31,6 +31,10 @@ NOTICING = 0.5
 
 ANSWERING = 0.2
 """Seconds after which a device has answered, at most."""
+
+ASTERN, KEPT_UP, UNSURE = 173.0, 0.55, 30.0
+"""Degrees aside up to which a target stays, since vehicles drift; logarithm of a lag that is made up under
+way; and degrees by which a robot may look elsewhere than along its last leg."""
 
 ARC = 0.5
 """Radians of an arc of shunting at most: it leads half of the turning radius from where the robot stands."""
@@ -204,16 +208,34 @@ class Rates:
         along, away = bearing(start, end), dist(start[:2], end[:2])
         if self.shunting <= 0.0 or along is None:
             return 0.0
-        if self.bound > 0 or (facing is None and not self.rounds):
+        if self.bound > 0:
+            astern = 180.0 if facing is None else min(180.0, abs(turn(facing, along)) + UNSURE)
+            late = max(self.circling, (1.0 + self.timing.spread) * self._behind(astern))
+            return self.shunting if away <= self.shunts_within else late
+        if facing is None and not self.rounds:
             return self.shunting if away <= self.shunts_within else self.circling
         aside = 0.0 if facing is None else abs(turn(facing, along))
-        if aside <= self.timing.aside:
+        if aside <= (self.timing.aside if self.circling or self.halt else self.timing.pivots):
             return 0.0
         if self.rounds and away > self.shunts_within * sin(radians(min(90.0, aside))):
             radius = self.circling * self.cruise / (2.0 * pi)
-            return (_rounded(away, radians(aside), radius) - away) / self.cruise
+            round = (_rounded(away, radians(aside), radius) - away) / self.cruise
+            return max(round, self._behind(aside))
         driving = self.shunting - self.halt * ceil(pi / ARC)
         return driving * aside / 180.0 + self.halt * ceil(radians(aside) / ARC)
+
+    def _behind(self, aside: float) -> float:
+        """Return the seconds that a leg takes longer whose target goes ahead while the robot turns round.
+
+        It turns by the acceleration to the side that it wants, which becomes less with the sine of the angle:
+        until it looks there, the target gains v / c · -2 ln cos (angle / 2) by a rate c of its turns. At the
+        end it makes that up by and by.
+
+        Args:
+            aside: degrees from where it looks.
+        """
+        lag = -log(cos(radians(min(ASTERN, aside)) / 2.0))
+        return self.timing.closing * max(0.0, lag - KEPT_UP)
 
     def rise(self, metres: float) -> float:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""

@@ -179,7 +179,7 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
     for leg in legs:
         least += soonest.eased(*leg, entering) if move.flows else soonest.from_stop_to_stop(*leg, push=push)
         expected += rates.from_stop_to_stop(*leg, facing, push)
-        most += latest.from_stop_to_stop(*leg, push=push)
+        most += latest.from_stop_to_stop(*leg, facing, push)
         facing, push, entering = bearing(*leg), rates.push(*leg, push), 0.0
     return MoveSeconds(least, expected, most)
 

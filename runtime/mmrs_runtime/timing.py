@@ -50,6 +50,10 @@ class LegTiming:
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
             spot: to a place abreast of it; by one curve, it gets onto longer legs and to places more ahead.
         aside: degrees from where it looks within which it sets out to a place without either.
+        pivots: degrees from where it looks beyond which one that turns on the spot does so before it sets
+            out; up to these it turns while it sets out, which is not counted.
+        closing: seconds in which what its target has gone ahead while it turned round becomes less by e; 0:
+            that waits for it.
         unlimited: how it takes legs where it does not keep the limits of the robot's type; None: as here.
         limited: how it takes them where it keeps them all; None: as here.
     """
@@ -80,6 +84,8 @@ class LegTiming:
     reporting: float = 0.0
     shunts_within: float = inf
     aside: float = 0.0
+    pivots: float = inf
+    closing: float = 0.0
     unlimited: LegTiming | None = None
     limited: LegTiming | None = None
 

@@ -102,7 +102,8 @@ def _late(steps: Sequence[Step], seen: Mapping[float, float]) -> Iterator[tuple[
 def _known(
     steps: Sequence[Step], track: Sequence[Sample], modelled: Modelled
 ) -> Iterator[tuple[float, float]]:
-    """Yield times of the log, and those of the vehicle."""
+    """Yield times of the log, and those of the vehicle; one that turns before it goes shows only stops."""
+    sets_out = modelled.takes_off
     legs, runs = modelled.legs, modelled.runs
     missions = iter(missions_in(track))
     passed: dict[str, float] = {}
@@ -117,7 +118,7 @@ def _known(
             seen = passed[move]
         elif label == "end" and move in modelled.stepped and move in legs:
             seen = stop_at(legs[move][-1], track, time - ahead, within)
-        elif label == "begin" and move in modelled.stepped and move in legs and within == LATER:
+        elif label == "begin" and sets_out and move in modelled.stepped and move in legs and within == LATER:
             left = left_at(legs[move][0], track, time + SETTING_OUT - ahead, within)
             seen = None if left is None else left - SETTING_OUT
         if seen is not None:

@@ -41,7 +41,7 @@ from .autopilot import (
 )
 from .modes import Mode
 from .needs import ON_ARDUPILOT
-from .pacing import COPTER, ROVER, SUB
+from .pacing import COPTER, PIVOT_DEGREES, ROVER, SUB
 from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, Timing, VehicleProfile
 
 NO_BATTERY = (0, 10, 11, 12, 18, 24, 27)
@@ -400,6 +400,7 @@ ARDUROVER = VehicleProfile(
     in_plane=True,
     stops_early=True,
     radii={"WP_RADIUS": 1.0},
+    pivots={"WP_PIVOT_ANGLE": PIVOT_DEGREES},
     starts_in=STARTS_IN,
 )
 """It obeys its action only where the failsafe of the ground station is enabled, too, which it is not by

@@ -161,6 +161,8 @@ class VehicleProfile:
             whatever is commanded.
         climbs, descents: parameters for its vertical speeds, with their units in a metre per second.
         yaw_rates: parameters for its turn rate, with their units in a degree per second.
+        pivots: parameters for the angle beyond which it turns on the spot before it goes, if it can, with
+            what they are set to where they are 0, which is never.
         corridor: metres that it is beside its legs at most, in corners and gusts.
         highest_item: metres above home, of items of its missions; None: unlimited.
         watches_jumps: whether a position that leaps is a fault.
@@ -205,6 +207,7 @@ class VehicleProfile:
     climbs: Mapping[str, float] = field(default_factory=dict)
     descents: Mapping[str, float] = field(default_factory=dict)
     yaw_rates: Mapping[str, float] = field(default_factory=dict)
+    pivots: Mapping[str, float] = field(default_factory=dict)
     corridor: float = 20.0
     highest_item: float | None = None
     watches_jumps: bool = True

@@ -62,6 +62,7 @@ _ROVER: Mapping[str, float] = {
     "FS_EKF_ACTION": 1,
     "WP_SPEED": 2.0,
     "WP_RADIUS": 2.0,
+    "WP_PIVOT_ANGLE": 0.0,
 }
 _SUB: Mapping[str, float] = {
     **_RATES,

@@ -13,7 +13,9 @@ mission count as passed within a radius, which is reduced where the mode asks fo
 within that radius of its target is given no more than the acceptance radius. What it keeps from what it
 perceives is increased. Whether it avoids anything at all is its owner's business, since a vehicle that
 leaves its path leaves what was verified. It climbs, descends and turns no faster than its type states: level
-speeds are commanded with each target, but an ArduSub takes others from its parameters only.
+speeds are commanded with each target, but an ArduSub takes others from its parameters only. A Rover that
+can turn on the spot does so before it goes to what is behind it: it steers by the acceleration to the side
+that it wants, which is none straight ahead and none straight back.
 """
 
 from __future__ import annotations
@@ -215,12 +217,19 @@ def set_up(link: Link, travel: Travel, acceptance: float = inf, speed: float = 0
             why = f"it {how.format(rate)}, as its type states"
             most |= {name: (rate * unit, why) for name, unit in units.items()}
     least = {name: (travel.margin, mode) for name in profile.autopilot.margins}
-    found = parameters.read(link, [*most, *least, *profile.fastest])
+    found = parameters.read(link, [*most, *least, *profile.fastest, *profile.pivots])
     expected = min(speed, profile.pacing.step.speed)
     for name, value in found.items():
         if name in profile.fastest:
             if value < expected * profile.fastest[name]:
                 yield f"{name} = {value:g}: slower than the {speed:g} m/s of its program ({LATE})"
+            continue
+        if name in profile.pivots:
+            if not value:
+                wanted = profile.pivots[name]
+                yield _changed(
+                    link, name, value, wanted, f"it turns on the spot where it turns by over {wanted:g}°"
+                )
             continue
         wanted, why = most.get(name) or least[name]
         if value > wanted if name in most else value < wanted:

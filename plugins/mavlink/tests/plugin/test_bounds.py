@@ -71,6 +71,33 @@ def submarine(speed=1.05, **limits):
     return Rates(speed, figures.climb, figures.descent, figures)
 
 
+@pytest.mark.parametrize(
+    ("aside", "seconds"),
+    [(90, 22.6), (120, 22.9), (135, 25.0), (150, 27.5), (160, 29.7), (170, 35.4), (175, 37.3)],
+)
+def test_a_car_takes_longer_to_what_is_behind_it_as_was_measured(aside, seconds):
+    """Flown by ArduRover 4.7-dev in GUIDED at 1.5 m/s: legs of 30 m, each turning by so many degrees."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "rover")
+    rover = Rates(1.5, 1.0, 1.0, autopilot.step, 36.0, 4.5, rounds=True, shunts_within=9.6, circling=5.03)
+    leg = ((0.0, 0.0, 0.0), (0.0, 30.0, 0.0))
+    assert rover.from_stop_to_stop(*leg, facing=float(aside)) == pytest.approx(seconds, rel=0.05)
+    assert rover.latest().from_stop_to_stop(*leg, facing=float(aside)) > seconds
+
+
+@pytest.mark.parametrize(
+    ("metres", "aside", "seconds"), [(4.0, 180, 11.0), (14.0, 180, 23.4), (9.22, 139, 16.6), (10.0, 90, 14.6)]
+)
+def test_a_robot_on_tracks_turns_before_it_goes_to_what_is_behind_it_as_was_measured(metres, aside, seconds):
+    """Flown by ArduRover 4.7-dev on tracks in GUIDED at 0.8 m/s, WP_PIVOT_ANGLE being 120."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "ground")
+    crawler = Kinematics(
+        cruise=0.8, slowest=0.0, fastest=1.5, climb=1.0, descent=1.0, turn_rate=autopilot.turn_rate
+    ).flown_by(autopilot.step)
+    leg, rates = ((0.0, 0.0, 0.0), (0.0, metres, 0.0)), crawler.rates(0.8)
+    assert rates.from_stop_to_stop(*leg, facing=float(aside)) == pytest.approx(seconds, rel=0.03)
+    assert rates.latest().from_stop_to_stop(*leg) > seconds
+
+
 def level_leg(rates, metres):
     return rates.from_stop_to_stop((0.0, 0.0, -5.0), (0.0, metres, -5.0))
 
