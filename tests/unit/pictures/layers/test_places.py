@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from drawn_scene import SHELL, SYMBOLS
 
+from mmrs_core.contributions.symbols import CORE_SYMBOLS
 from mmrs_core.drawings.drawing import Geometry, HeightReference, LeftOut, Role
 from mmrs_core.pictures.layers.chart import chart_of
 from mmrs_core.pictures.layers.layer import Layer
@@ -17,7 +18,9 @@ from mmrs_core.pictures.layers.places import (
     tasks_on,
 )
 from mmrs_core.pictures.palette import COLOURS
+from mmrs_core.pictures.preview.features import elements_of
 from mmrs_core.scene import Frame, Part
+from mmrs_core.scene.relays import RELAY
 
 CHART = chart_of(Frame("EPSG:4326", 42.37, 13.35, 100.0, "MSL"), (HeightReference.SEA_LEVEL,))
 RING = ("urn:mmrs:mission:1.0", "Ring")
@@ -57,6 +60,18 @@ def test_what_lies_under_water_is_below_the_origin():
     )
     assert (line.name, line.heights[0].tolist()) == ("pipe", [93.0, 90.5])
     assert (mark.geometry, mark.heights) == (Geometry.POINT, ())
+
+
+def test_a_relay_is_a_mark_at_its_height_with_its_range():
+    symbols = {each.metaclass: each for each in CORE_SYMBOLS}
+    relay = Part((RELAY,), {"name": "ridge", "position": (10.0, 20.0, 6.0), "range": 650.0})
+    (mark,) = elements_on(CHART, [relay], symbols)
+    assert (mark.geometry, mark.name, mark.description) == (Geometry.POINT, "ridge", "relay")
+    assert mark.heights[0].tolist() == [106.0]
+    assert mark.properties == {"type": "Relay", "range": 650.0}
+    (drawn,) = elements_of([relay], symbols)
+    assert (drawn.marks, drawn.symbol.icon) == (((10.0, 20.0),), "⌁")
+    assert "range 650" in drawn.tip
 
 
 def test_of_two_positions_above_each_other_neither_height_is_chosen():
