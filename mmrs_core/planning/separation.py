@@ -43,8 +43,8 @@ _SPARE = 0.05
 _ROUNDS = 8
 """Schedules that are made with later starts."""
 
-_SMALL = 4
-"""Robots up to which each of a team is settled first once, to find who starts later."""
+_ORDERS = 16
+"""Orders at most that are tried to find who starts later."""
 
 
 class TooNearError(InfeasibleError):
@@ -279,27 +279,34 @@ class Traffic:
     def later_starts(self) -> dict[str, float]:
         """Return when robots must leave home at the earliest to keep apart; empty if that does not help.
 
-        One after the other, that one is settled which starts the least later for those settled before. In a
-        small team each robot is settled first once; the one after which the last is back earliest counts.
+        One after the other is settled, those that are away longest first, and starts no later than those
+        settled before ask for. The robot that is then back last is settled first in the next try, as
+        bottlenecks are shifted (Adams, Balas and Zawack, 1988); the try counts after which all are back
+        earliest.
         """
-        busy = {each.robot: each.steps for each in self.plan.robots if each.steps}
-        firsts = list(busy) if len(busy) <= _SMALL else [min(busy)]
-        found = [shifts for first in firsts if (shifts := self._settled(first, busy))]
-        best = min(
-            found,
-            key=lambda shifts: max(busy[name][-1].end + shift for name, shift in shifts.items()),
-            default={},
-        )
-        return {name: _leaves(busy[name]) + shift for name, shift in best.items() if shift}
+        backs = {each.robot: each.steps[-1].end for each in self.plan.robots if each.steps}
+        order = sorted(backs, key=lambda name: (-backs[name], name))
+        tries: list[dict[str, float]] = []
+        for _ in range(_ORDERS):
+            shifts = self._settled(order)
+            last = max(shifts, key=lambda name: (backs[name] + shifts[name], name))
+            tries.append(shifts)
+            if last == order[0]:
+                break
+            order.remove(last)
+            order.insert(0, last)
+        best = min(tries, key=lambda shifts: max(backs[name] + shift for name, shift in shifts.items()))
+        if inf in best.values():
+            return {}
+        return {name: _leaves(self.steps(name)) + shift for name, shift in best.items() if shift}
 
-    def _settled(self, first: str, waiting: Iterable[str]) -> dict[str, float]:
-        """Return by how many seconds robots start later if that one does not; empty if that does not help."""
-        shifts = {first: 0.0}
-        while left := [name for name in waiting if name not in shifts]:
-            shift, name = min((self._shift(name, shifts), name) for name in left)
-            if shift == inf:
-                return {}
-            shifts[name] = shift
+    def _settled(self, order: Iterable[str]) -> dict[str, float]:
+        """Return by how many seconds robots start later, up to the first that never can: by inf."""
+        shifts: dict[str, float] = {}
+        for name in order:
+            shifts[name] = self._shift(name, shifts) if shifts else 0.0
+            if shifts[name] == inf:
+                break
         return shifts
 
     def _shift(self, late: str, fixed: Mapping[str, float]) -> float:
