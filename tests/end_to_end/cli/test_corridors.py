@@ -43,3 +43,11 @@ def test_an_exported_corridor_is_imported_as_it_was(mmrs, fields, tmp_path, form
     assert code == 0, err
     before, after = ((each / "context.xmi").read_text().split("<corridors ")[1] for each in (fields, other))
     assert before == after
+
+
+def test_a_corridor_without_a_width_is_refused(mmrs, tmp_path):
+    project = shutil.copytree(shipped("examples") / "carbon-dioxide", tmp_path / "fields")
+    drawing = tmp_path / "lane.geojson"
+    drawing.write_text(json.dumps({"type": "FeatureCollection", "features": [LANE]}))
+    code, _, err = mmrs("import", drawing, "--into", project, "--as", "lane=Corridor")
+    assert (code, "Corridor 'lane': width is 0, but must be more than 0 [CTX018]" in err) == (1, True)
