@@ -3,6 +3,7 @@
 from collections import Counter
 
 import pytest
+from mission_generator.missions import sample
 from mission_generator.outcome import outcome_of
 
 BATCH = 10
@@ -32,3 +33,9 @@ def test_a_thousand_behaviours_pass_and_solvable_missions_are_not_refused(first,
 def test_a_plan_whose_charge_barely_suffices_is_safe(contributions, tmp_path):
     outcome = outcome_of(2015, contributions, tmp_path)
     assert (outcome.refused, outcome.complaints) == ("", [])
+
+
+def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributions, tmp_path):
+    assert sample(122, contributions.languages).context.corridors
+    outcome = outcome_of(122, contributions, tmp_path)
+    assert (outcome.refused, outcome.complaints, outcome.separation) == ("", [], 8.0)
