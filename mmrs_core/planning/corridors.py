@@ -28,7 +28,7 @@ _SLACK = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Passage:
+class CorridorPath:
     """A robot's path through one corridor: the corridor's name, and positions at one height."""
 
     corridor: str
@@ -66,13 +66,13 @@ class Corridors:
         self._lines = [(corridor, line) for corridor, line in found if line]
         self._clearance, self._kinematics, self._space = robot.clearance, kinematics, space
         self._areas, self._direction = tuple(areas), direction
-        self._known: dict[float, tuple[list[Passage], list[str]]] = {}
+        self._known: dict[float, tuple[list[CorridorPath], list[str]]] = {}
 
     def __bool__(self) -> bool:
         """Return whether the robot must go through one of them."""
         return bool(self._lines)
 
-    def passages(self, wanted: float) -> list[Passage]:
+    def passages(self, wanted: float) -> list[CorridorPath]:
         """Return the path through each corridor that the robot can use, as near to a height as can be."""
         return self._at(wanted)[0]
 
@@ -81,14 +81,14 @@ class Corridors:
         faults = self._at(wanted)[1]
         return f"no corridor leads it {self._direction}: {'; '.join(faults)}" if faults else ""
 
-    def _at(self, wanted: float) -> tuple[list[Passage], list[str]]:
+    def _at(self, wanted: float) -> tuple[list[CorridorPath], list[str]]:
         if wanted not in self._known:
             found = [self._passage(corridor, line, wanted) for corridor, line in self._lines]
-            passages = [each for each in found if isinstance(each, Passage)]
+            passages = [each for each in found if isinstance(each, CorridorPath)]
             self._known[wanted] = passages, [each for each in found if isinstance(each, str)]
         return self._known[wanted]
 
-    def _passage(self, corridor: Corridor, line: Sequence[Point], wanted: float) -> Passage | str:
+    def _passage(self, corridor: Corridor, line: Sequence[Point], wanted: float) -> CorridorPath | str:
         fault = misfit(corridor, self._clearance, self._kinematics)
         if fault:
             return fault
@@ -96,7 +96,7 @@ class Corridors:
         for level in self._levels(line, low, high, wanted):
             points = tuple((east, north, level) for east, north in line)
             if self._space.is_clear(points) and self._space.in_range(points):
-                return Passage(corridor.name, points)
+                return CorridorPath(corridor.name, points)
         return self._blocked(corridor, line, min(max(wanted, low), high))
 
     def _levels(self, line: Sequence[Point], low: float, high: float, wanted: float) -> list[float]:

@@ -11,7 +11,7 @@ from math import dist, inf
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.corners import Corners
-from mmrs_core.planning.corridors import Corridors, Passage
+from mmrs_core.planning.corridors import Corridors, CorridorPath
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import Reach, Reaches
 from mmrs_core.planning.strokes import length_of
@@ -406,7 +406,7 @@ class Travel:
                 best = route
         return best or why
 
-    def _by(self, passage: Passage, start: Position, goal: Position, level: float | None) -> Route | str:
+    def _by(self, passage: CorridorPath, start: Position, goal: Position, level: float | None) -> Route | str:
         """Return the route through one corridor."""
         there = self._routed(start, passage.points[0], level)
         on = self._routed(passage.points[-1], goal, level)
