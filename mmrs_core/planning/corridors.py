@@ -89,7 +89,7 @@ class Corridors:
         return self._known[wanted]
 
     def _passage(self, corridor: Corridor, line: Sequence[Point], wanted: float) -> CorridorPath | str:
-        fault = misfit(corridor, self._clearance, self._kinematics)
+        fault = _misfit(corridor, self._clearance, self._kinematics)
         if fault:
             return fault
         low, high = _band(corridor, self._clearance, self._kinematics)
@@ -135,7 +135,7 @@ def _band(corridor: Corridor, clearance: float, kinematics: Kinematics) -> tuple
     )
 
 
-def misfit(corridor: Corridor, clearance: float, kinematics: Kinematics) -> str:
+def _misfit(corridor: Corridor, clearance: float, kinematics: Kinematics) -> str:
     """Return why a robot does not fit into a corridor, and by how much; empty: it fits."""
     name, needed = f"corridor '{corridor.name}'", 2.0 * clearance
     if corridor.width < needed - _SLACK:

@@ -11,7 +11,7 @@ from math import dist, inf
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.corners import Corners
-from mmrs_core.planning.corridors import Corridors, CorridorPath
+from mmrs_core.planning.corridors import CorridorPath, Corridors
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import Reach, Reaches
 from mmrs_core.planning.strokes import length_of

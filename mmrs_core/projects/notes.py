@@ -40,6 +40,7 @@ drawn in a map program. What goes where, in this order:
 forbiddenAreas: areas that no robot enters, at any height.
 emergencyAreas: where robots land or surface when something fails: free of people, boats and animals.
 obstacles: buildings, trees, wires; maxHeight in metres above the first home, without it at every height.
+corridors: agreed paths from home to the field, by which all robots come and go; without one, by any path.
 environment: {environment};
 without them, checks that need them have the result unknown."""
 _ENVIRONMENT: Mapping[Medium, str] = {

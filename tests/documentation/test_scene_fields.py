@@ -45,6 +45,7 @@ TOLD = {
         scene.Scene,
         scene.Area,
         scene.AreaUse,
+        scene.Corridor,
         scene.Device,
         scene.DeviceAction,
         scene.Battery,
