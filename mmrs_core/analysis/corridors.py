@@ -187,7 +187,7 @@ class _Walk:
                 words = f"the path to {self._named(end)}"
                 self.ways.append(_Way(words, True, parts, gaps, end))
             elif any(dist(each.end[:2], self._home[:2]) > _HOME for part in parts for each in part):
-                self.gaps.append(UnknownMove(end, "no move before it says which task it serves"))
+                self.gaps.append(UnknownMove(end, "no move before it names the task that it serves"))
 
     def _from_work(self, work: int) -> None:
         ends = [path.points[-1] for path in self._paths.get(work, ())]

@@ -44,7 +44,7 @@ class Corners:
         return [(shapely.LineString(each.line), each) for each in self._corridors]
 
     def _spare(self, corner: Position) -> float:
-        """Return the metres by which a robot may be off a corner on the line of a corridor; else inf."""
+        """Return the metres by which a robot may be off a corner on the line of a corridor; inf elsewhere."""
         point, own = shapely.Point(corner[:2]), self._robot.clearance
         rooms = (
             min(each.width / 2.0, corner[2] - each.low, each.high - corner[2])

@@ -165,7 +165,7 @@ def test_actions_of_devices_are_work_whatever_the_move_says():
 def test_moves_that_name_no_task_leave_it_unknown():
     verdict = through(go("there", (80.0, 0.0, 0.0)), go("home", (0.0, 0.0, 0.0)))
     assert verdict.status is Status.UNKNOWN
-    assert "says which task it serves" in verdict.message
+    assert "names the task that it serves" in verdict.message
 
 
 def test_a_place_that_is_not_known_leaves_it_unknown_unless_the_rest_leads_through():
