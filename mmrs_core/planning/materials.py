@@ -132,7 +132,7 @@ def layout_of(work: Work, pilot: Pilot, robots: int, *, coarsest: float = 0.0, f
     if not work.divisible:
         return Layout((work.strokes,), can_turn=False)
     parts = [part for stroke in work.strokes for part in parts_of(stroke)]
-    seconds = [pilot.serve_seconds(part) for part in parts]
+    seconds = [serve_seconds(part, pilot.robot, pilot.kinematics) for part in parts]
     target = max(sum(seconds) / (_PORTIONS_PER_ROBOT * robots), coarsest)
     target = min(target, pilot.charge / _PORTIONS_PER_CHARGE)
     target = 0.0 if fine else target

@@ -227,7 +227,10 @@ class MixedFilling:
         for each in group:
             lay_out_rest = partial(self._mixture.material, each.pilot.robot.name, sort, runs)
             if (forwards := lay_out_rest()) is not None:
-                found.append(each.of_rest(forwards, partial(lay_out_rest, backwards=True)))
+                backwards = partial(lay_out_rest, backwards=True)
+                found.append(
+                    ShareCandidate(each.pilot, each.state, each.ready, forwards, backwards, each.record)
+                )
         return found if len(found) == len(group) or not self._everyone else []
 
 

@@ -47,21 +47,12 @@ def paced(parts: Sequence[Stroke], pilot: Pilot, bound: int = 0) -> list[tuple[f
     for chain in _chains(parts):
         if here is not None:
             now += pilot.hop_seconds(here, chain[0])[1 + bound]
-        known = _known(chain, pilot, bound)
+        key = (bound, tuple(chain))
+        if (known := pilot.paces.get(key)) is None:
+            known = pilot.paces[key] = _of_chain(chain, pilot, bound)
         spans += [(now + begin, now + end) for begin, end in known]
         now, here = spans[-1][1], chain[-1].points[-1]
     return spans
-
-
-def _known(chain: Sequence[Stroke], pilot: Pilot, bound: int) -> list[tuple[float, float]]:
-    """Return when each part of a chain begins and ends; identities are looked at first, they cost nothing."""
-    identities = (bound, *map(id, chain))
-    if identities not in pilot.known:
-        key = (bound, tuple(chain))
-        if key not in pilot.paces:
-            pilot.paces[key] = _of_chain(chain, pilot, bound)
-        pilot.known[identities] = chain, pilot.paces[key]
-    return pilot.known[identities][1]
 
 
 def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:

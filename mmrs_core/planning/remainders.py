@@ -74,8 +74,6 @@ class Remainders:
         self._ground: dict[int, Shapes] = {}
         self._patches: dict[_Part, list[frozenset[_Part]]] = {}
         self._under: dict[tuple[int, int], list[list[int]]] = {}
-        self._all: dict[int, list[list[_Part] | None]] = {}
-        self._gaps: dict[_Part, bool] = {}
 
     def left(self, sort: int, before: Sequence[Turn]) -> frozenset[int]:
         """Return the indices of the parts of a sort that others have not done as a whole."""
@@ -87,37 +85,9 @@ class Remainders:
     def _bare(self, sort: int, before: Sequence[Turn]) -> Iterator[int]:
         """Yield the parts under which some ground is not covered by what others have done."""
         done = {(turn.sort, part) for turn in before for part in turn.done}
-        for part, under in enumerate(self._all_under(sort)):
-            if under is None:
-                continue
-            if done.isdisjoint(under):
+        for part in range(len(self.parts[sort])):
+            if any(done.isdisjoint(by) for by in self._patches_of(sort, part)):
                 yield part
-            elif done.issuperset(under):
-                if self._has_gap(sort, part):
-                    yield part
-            elif any(done.isdisjoint(by) for by in self._patches_of(sort, part)):
-                yield part
-
-    def _has_gap(self, sort: int, part: int) -> bool:
-        """Return whether some ground under a part is covered by no other sort."""
-        if (sort, part) not in self._gaps:
-            own, under = self._ground_of(sort)[part], self._all_under(sort)[part] or ()
-            others = shapely.union_all([self._ground_of(o)[i] for o, i in under], grid_size=GRID)
-            gap = shapely.difference(own, others, grid_size=GRID)
-            self._gaps[sort, part] = bool(gap.area > _ROUNDING * (1.0 + own.area))
-        return self._gaps[sort, part]
-
-    def _all_under(self, sort: int) -> list[list[_Part] | None]:
-        """Return, by part of a sort, all that covers some of the same ground; None: it covers none itself."""
-        if sort not in self._all:
-            others = [other for other in range(len(self.parts)) if other != sort]
-            areas = shapely.area(self._ground_of(sort))
-            found = [
-                [(o, i) for o in others for i in self._under_of(sort, o)[part]] for part in range(len(areas))
-            ]
-            solid = (areas > _ROUNDING * (1.0 + areas)).tolist()
-            self._all[sort] = [under if some else None for under, some in zip(found, solid, strict=True)]
-        return self._all[sort]
 
     def _patches_of(self, sort: int, part: int) -> list[frozenset[_Part]]:
         """Return, for each patch of the ground under a part, the parts of other sorts that cover it.

@@ -10,7 +10,6 @@ from typing import TypeVar
 
 from mmrs_core.planning.choices import carry_out
 from mmrs_core.planning.jobs import Job
-from mmrs_core.planning.materials import Material
 from mmrs_core.planning.mixing import MixedFilling, mixes
 from mmrs_core.planning.sharing import Filling, ShareCandidate, Sharing, earliest, fillings
 from mmrs_core.planning.states import Bounds, Ready, State
@@ -19,9 +18,6 @@ from mmrs_core.planning.turns import JobResult, TurnShare, in_turns, turn_of
 from mmrs_core.scene import Task
 
 _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
-
-_MOST_KNOWN = 1000
-"""Robots in some state that are remembered for some job."""
 
 _MOST_ALONE = 8
 """Robots that are tried for work that one is to do: one that begins later may need fewer sorties."""
@@ -265,21 +261,12 @@ class _Scheduling:
             forwards = self._team.forwards(job.name, name)
             if forwards is None:
                 continue
-            each = self._candidate(job.name, name, forwards, self._ready(job, name, task.earliest))
+            pilot, state = self._team.pilots[name], self._states[name]
+            ready = self._ready(job, name, task.earliest)
+            backwards = partial(self._team.backwards, job.name, name)
+            each = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
             found.append((each.run(0).back(0), each))
         return [each for _, each in sorted(found, key=lambda pair: pair[0])]
-
-    def _candidate(self, job: str, name: str, forwards: Material, ready: Ready) -> ShareCandidate:
-        """Return a robot for a job, with what schedules found out before in which its state was the same."""
-        known, state = self._team.candidates, self._states[name]
-        key = (job, name, id(state), ready, self._record)
-        if key not in known:
-            if len(known) >= _MOST_KNOWN:
-                known.clear()
-            backwards = partial(self._team.backwards, job, name)
-            pilot = self._team.pilots[name]
-            known[key] = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
-        return known[key]
 
     def _choices_of(
         self, task: Task, candidates: Sequence[ShareCandidate]

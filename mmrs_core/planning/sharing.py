@@ -38,20 +38,12 @@ class ShareCandidate:
     backwards: Callable[[], Material | None]
     record: bool
     _runs: dict[int, PortionRun] = field(default_factory=dict)
-    _others: dict[int, ShareCandidate] = field(default_factory=dict)
 
     def run(self, begin: int) -> PortionRun:
         """Return the robot's run from a portion on, made when it is first asked for."""
         if begin not in self._runs:
             self._runs[begin] = self._run(self.forwards, begin)
         return self._runs[begin]
-
-    def of_rest(self, forwards: Material, backwards: Callable[[], Material | None]) -> ShareCandidate:
-        """Return the same robot for what others leave of the work, made when it is first asked for."""
-        if id(forwards) not in self._others:
-            rest = ShareCandidate(self.pilot, self.state, self.ready, forwards, backwards, self.record)
-            self._others[id(forwards)] = rest
-        return self._others[id(forwards)]
 
     def _run(self, material: Material, begin: int) -> PortionRun:
         return PortionRun(self.pilot, material, self.state, begin, self.ready, record=self.record)

@@ -8,7 +8,7 @@ until the latest at which it may be over. Energy is power against the wind or cu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
@@ -27,8 +27,7 @@ class Pilot:
     """Moves one robot's state on; each action is a short function of the state.
 
     Attributes:
-        paces: by (bound, parts in one go): when each begins and ends, see `paced`; known: by the identities
-            of these, with them. served: by the identity of a stroke, with it, the seconds that it takes.
+        paces: by (bound, parts in one go): when each begins and ends, see `paced`.
         charge: seconds that a charge allows.
         stuck: whether it cannot set out, for no charge suffices for a diversion from above home.
         fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
@@ -57,8 +56,6 @@ class Pilot:
         self.fresh = 0.0 if launches else self._noticing
         self.stopping = 0.0 if launches else self.kinematics.timing.reporting
         self.paces: dict[tuple[int, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
-        self.known: dict[tuple[int, ...], tuple[Sequence[Stroke], list[tuple[float, float]]]] = {}
-        self.served: dict[int, tuple[Stroke, float]] = {}
         self._exits: dict[Position, Route | None] = {}
         self._descents: dict[Position, Route | None] = {}
         self._homes: dict[Position, Route | None] = {}
@@ -255,14 +252,6 @@ class Pilot:
 
     def _approach_speed(self, stroke: Stroke) -> float | None:
         return approach_speed(stroke, self.kinematics)
-
-    def serve_seconds(self, stroke: Stroke) -> float:
-        """Return how long it takes for a stroke; known once it has been asked."""
-        known = self.served.get(id(stroke))
-        if known is None:
-            seconds = serve_seconds(stroke, self.robot, self.kinematics)
-            known = self.served[id(stroke)] = stroke, seconds
-        return known[1]
 
     def serve(self, state: State, stroke: Stroke, task: str, rule: str, first: bool, last: bool) -> State:
         """Return the state after a stroke, whose first point the robot is at."""

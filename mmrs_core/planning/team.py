@@ -22,7 +22,6 @@ from mmrs_core.planning.materials import (
 )
 from mmrs_core.planning.mixing import Mixture, WorkGroup
 from mmrs_core.planning.remainders import comparable
-from mmrs_core.planning.sharing import ShareCandidate
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
@@ -56,7 +55,6 @@ class Team:
         kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
         done: what has become of jobs in earlier schedules; see `schedule`.
-        candidates: robots in states in which they were in earlier schedules.
     """
 
     def __init__(
@@ -107,7 +105,6 @@ class Team:
         self.kinds = _kinds_of(scene, self.pilots)
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
-        self.candidates = dict[tuple[object, ...], ShareCandidate]()
         self._others: dict[tuple[object, ...], Team] = {}
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self._refusals = dict[tuple[str, str], str]()
