@@ -265,8 +265,8 @@ class Observer:
     def _ask(self) -> None:
         """Request what is kept: a vehicle that restarts forgets it."""
         intervals = (mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
-        for number, rate in zip(intervals, (RATE, 2.0), strict=True):
-            self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate)
+        for number in intervals:
+            self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / RATE)
         if not self.version:
             self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
 

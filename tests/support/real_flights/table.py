@@ -279,6 +279,10 @@ FENCES = tuple(
     )
     for craft in (COPTER, ROVER)
 )
+SCHOOL = ((8.0, 10.0, 0.0), (17.0, 10.0, 0.0), (17.0, 20.0, 0.0), (8.0, 20.0, 0.0))
+"""An area inside the square, which is uploaded as a fence."""
+
+AREAS = (Flight("copter: area to fence", routes(_short(COPTER), forbidden=SCHOOL), deviation=1.5),)
 BUOY = (
     _upset(
         SUB,
@@ -308,13 +312,13 @@ def _as_px4(flight: Flight, **changes: Any) -> Flight:
 
 _COPTERS = {
     flight.name.removeprefix("copter: "): flight
-    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER))
+    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER), *AREAS)
 }
 PX4S = (
     *(
         _as_px4(_COPTERS[name])
         for name in (
-            *("legs", "fluid", "plan in AUTO", "turns", "two sorties"),
+            *("legs", "fluid", "plan in AUTO", "turns", "two sorties", "area to fence"),
             *("hold, then resume", "order return", "order stop", "order land"),
             *("link cut for 40 s", "process killed"),
         )
@@ -348,6 +352,7 @@ FLIGHTS = (
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _faults(craft)),
     *MOTORS,
     *FENCES,
+    *AREAS,
     *BUOY,
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _resumes(craft)),
     *EXAMPLES,
