@@ -115,7 +115,7 @@ CORE_SYMBOLS = (
     MapSymbol(
         (_CONTEXT, "Corridor"),
         "corridor",
-        "#37679b",
+        "",
         "⇄",
         ("width", "minHeight", "maxHeight", "use", "robotTypes"),
         _band,

@@ -119,7 +119,7 @@ ROVER = AutopilotTiming(
 need not hold. On missions it never reverses to turn, and corners count as passed within WP_RADIUS, which is
 set. Half of the settling is before it sets out, as the first and last legs of runs show.
 
-In GUIDED the target of one that steers like a car goes on while it turns round, and is made up by PSC_POS_P,
+In GUIDED the target of one that steers like a car moves on while it turns round, and is made up by PSC_POS_P,
 0.2 per second, at the end (``AR_WPNav::update_psc_input_shaping``): legs of 30 m at 1.5 m/s took 2.5, 5.0,
 7.2, 12.9 and 14.8 s longer for turns by 135, 150, 160, 170 and 175 degrees, and up to 120 degrees not half a
 second. On missions the target waits.
