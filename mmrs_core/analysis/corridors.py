@@ -4,8 +4,9 @@ A sortie begins at Start, or at a Recharge. From there to the first move that wo
 the path must follow the line of a corridor from its one end to the other; from the last such move back home,
 that of a corridor in the other direction. All along, the robot keeps half its diagonal, the position error
 and the room that it needs to turn from both sides, and from the corridor's heights; where it cuts a corner or
-stops late, so much more. Between tasks, in a diversion, and where it ends elsewhere than at home, it goes
-where it likes.
+stops late, so much more. Between tasks, in a diversion, and where it ends in the field, it goes where it
+likes; in the field is where the nearest end of all corridors out is an inner one. A sortie on a branch
+without work follows one line in, and one out.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from mmrs_core.analysis.verdicts import (
     not_checked,
     safe,
 )
-from mmrs_core.behaviour.program import Move, RobotProgram
+from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 from mmrs_core.diagnostics import lengths
@@ -85,7 +86,7 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
         True: [(each.name, _tube(each, each.way_in, own)) for each in mine if each.way_in],
         False: [(each.name, _tube(each, each.way_out, own)) for each in mine if each.way_out],
     }
-    walk = _Walk(input, robot)
+    walk = _Walk(input, robot, [each.way_out for each in mine if each.way_out])
     margins, gaps = list[Margin](), [*walk.gaps]
     for way in walk.ways:
         if not tubes[way.inwards]:
@@ -95,6 +96,13 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
             margins.append(margin)
         elif margin is not None:
             gaps += way.gaps
+    for trip in walk.round_trips:
+        both = [_margin(robot, each, tubes[each.inwards], inf) for each in trip if tubes[each.inwards]]
+        known = [each for each in both if each is not None and each.value >= 0.0]
+        if walk.works and len(known) == len(both):
+            margins += known
+        else:
+            gaps.append(UnknownMove(trip[0].last, "no move before it names the task that it serves"))
     found = list(judged(NAME, robot, "m", margins, gaps)) or [_nothing(robot, walk)]
     for each in found:
         yield replace(each, caveat=walk.caveat) if each.status is Status.SAFE else each
@@ -157,12 +165,17 @@ class _Walk:
 
     Attributes:
         ways: to each first and from each last move that works on a task of a sortie.
+        round_trips: whole paths of sorties that leave home without work, each as a path in and as one out.
+        works: whether any move works, so that a sortie without such a move is known to be without work.
         gaps: sorties of which it is not known whether they lead to a task.
-        caveat: where the robot ends elsewhere than at home; empty: nowhere.
+        caveat: where the robot ends in the field; empty: nowhere.
     """
 
-    def __init__(self, input: CheckInput, robot: RobotProgram) -> None:
-        self._robot, self._home = robot, home_of(robot)
+    def __init__(
+        self, input: CheckInput, robot: RobotProgram, lines_out: Sequence[tuple[Point, ...]]
+    ) -> None:
+        """Walk the moves of a robot; `lines_out`: of the corridors out, from their inner ends on."""
+        self._robot, self._home, self._lines_out = robot, home_of(robot), lines_out
         motion = motions(input)[robot.id]
         self._paths: dict[int, list[MovePath]] = {}
         for path in motion.paths:
@@ -170,10 +183,13 @@ class _Walk:
         self._unknown = {gap.move: gap for gap in motion.gaps}
         self._spreads = _spreads(input, robot, motion)
         self.ways, self.gaps, self.caveat = list[_Way](), list[UnknownMove](), ""
-        for move in sorted(reachable_moves(robot)):
+        self.round_trips = list[tuple[_Way, _Way]]()
+        reachable = sorted(reachable_moves(robot))
+        self.works = any(map(self._works, reachable))
+        for move in reachable:
             if move == robot.start or robot.moves[move].is_a(RECHARGE):
                 self._from_home(move)
-            elif _works(robot.moves[move]):
+            elif self._works(move):
                 self._from_work(move)
 
     def _from_home(self, start: int) -> None:
@@ -183,11 +199,12 @@ class _Walk:
                 continue
             begins = [path.points[0] for path in self._paths.get(start, ())]
             parts, gaps = self._pieces(chain, begins or [self._home])
-            if _works(self._robot.moves[end]):
-                words = f"the path to {self._named(end)}"
+            words = f"the path to {self._named(end)}"
+            if self._works(end):
                 self.ways.append(_Way(words, True, parts, gaps, end))
-            elif any(dist(each.end[:2], self._home[:2]) > _HOME for part in parts for each in part):
-                self.gaps.append(UnknownMove(end, "no move before it names the task that it serves"))
+            elif any(self._is_away(each.end) for part in parts for each in part):
+                there, back = (_Way(words, inwards, parts, gaps, end) for inwards in (True, False))
+                self.round_trips.append((there, back))
 
     def _from_work(self, work: int) -> None:
         ends = [path.points[-1] for path in self._paths.get(work, ())]
@@ -195,16 +212,37 @@ class _Walk:
             if end is None:
                 self.gaps.append(UnknownMove(chain[-1], "its path goes round, or divides too often"))
                 continue
-            if _works(self._robot.moves[end]):
+            if self._works(end):
                 continue
             parts, gaps = self._pieces([*chain[1:], end], ends)
             last = next((part[-1].end for part in reversed(parts) if part), None)
             where = last if parts and last is not None else (ends[-1] if ends else None)
-            if where is not None and not gaps and dist(where[:2], self._home[:2]) > _HOME:
+            if where is not None and not gaps and self._is_away(where) and self._is_inside(where):
                 away = dist(where[:2], self._home[:2])
-                self.caveat = f"it ends {away:.0f} m from its home, so that no exit is asked for"
+                self.caveat = (
+                    f"it ends in the field, {away:.0f} m from its home, so that no exit is asked for"
+                )
                 continue
             self.ways.append(_Way(f"the path home from {self._named(work)}", False, parts, gaps, end))
+
+    def _works(self, move: int) -> bool:
+        """Return whether a move is work: on a task, or of a device away from home."""
+        found = self._robot.moves[move]
+        if found.works:
+            return True
+        used = [end for end, each in ((0, found.before), (-1, found.after)) for act in each if act.device]
+        paths = self._paths.get(move, ())
+        return bool(used) and (
+            not paths or any(self._is_away(each.points[i]) for each in paths for i in used)
+        )
+
+    def _is_away(self, place: Position) -> bool:
+        return dist(place[:2], self._home[:2]) > _HOME
+
+    def _is_inside(self, place: Position) -> bool:
+        """Return whether the nearest end of all corridors out is an inner one."""
+        ends = [(dist(place[:2], line[end]), end) for line in self._lines_out for end in (0, -1)]
+        return not ends or min(ends)[1] == 0
 
     def _named(self, move: int) -> str:
         found = self._robot.moves[move]
@@ -223,7 +261,7 @@ class _Walk:
             divided += max(0, len(following) - 1)
             for after in following:
                 move = self._robot.moves[after]
-                if _works(move) or move.is_a(RECHARGE) or after == self._robot.stop:
+                if self._works(after) or move.is_a(RECHARGE) or after == self._robot.stop:
                     yield chain, after
                 elif after in chain or divided > _MOST:
                     yield chain, None
@@ -251,11 +289,6 @@ class _Walk:
             runs[-1] += _split(path, before, after)
             places, before = [path.points[-1]], after
         return tuple(tuple(run) for run in runs if run), tuple(gaps)
-
-
-def _works(move: Move) -> bool:
-    """Return whether a move is work: on a task, or of a device."""
-    return move.works or any(action.device for action in (*move.before, *move.after))
 
 
 def _begins(path: MovePath, places: Iterable[Position]) -> bool:

@@ -154,7 +154,33 @@ def test_each_branch_of_a_choice_comes_through():
 def test_a_robot_that_ends_in_the_field_needs_no_exit_and_that_is_said():
     verdict = through(*out_and_in()[:4])
     assert verdict.status is Status.SAFE
-    assert verdict.caveat == "it ends 80 m from its home, so that no exit is asked for"
+    assert verdict.caveat == "it ends in the field, 80 m from its home, so that no exit is asked for"
+
+
+def test_a_robot_that_ends_before_the_corridor_comes_out_through_it():
+    beside = [*out_and_in()[:4], *path("back", (80.0, 40.0), (2.0, 3.0))]
+    assert through(*beside).status is Status.VIOLATED
+    assert through(*out_and_in()[:-1], *path("end", (2.0, 3.0))).status is Status.SAFE
+
+
+def test_what_devices_do_at_home_is_not_work():
+    moves = out_and_in()
+    start = replace(hold("test", 1.0), after=(use("camera", "photo"),))
+    end = replace(hold("save", 1.0), before=(use("camera", "photo"),))
+    assert through(start, *moves, end).status is Status.SAFE
+    first = replace(moves[0], before=(use("camera", "photo"),))
+    assert through(first, *moves[1:]).status is Status.SAFE
+
+
+@pytest.mark.parametrize(
+    ("north", "status"), [(0.0, Status.SAFE), (1.0, Status.SAFE), (30.0, Status.UNKNOWN)]
+)
+def test_a_branch_without_work_comes_through_in_and_out(north, status):
+    out = path("out", (10.0, north), (50.0, north), (80.0, north))
+    back = path("back", (50.0, north), (10.0, north), (0.0, 0.0))
+    without = [*out, *back, recharge("charge", 60.0)]
+    assert through(*without, *out_and_in()).status is status
+    assert through(*without).status is Status.UNKNOWN
 
 
 def test_actions_of_devices_are_work_whatever_the_move_says():
