@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from mmrs_core.planning.corridors import crossings
 from mmrs_core.planning.jobs import Job, is_control
 from mmrs_core.planning.omissions import omissions_of
 from mmrs_core.planning.schedule import Schedule, signal_name
@@ -43,6 +44,7 @@ def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         left_out=omissions_of(team.scene, steps),
         notes=(
             *_stranded(team, schedule),
+            *_past_corridors(team.scene, steps),
             *_of_works(team.scene, steps),
             *_unstated_flow(team.scene),
             *_NOTES,
@@ -59,6 +61,12 @@ def _of_works(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> Iterator[s
                 found.setdefault((serve.task, note), {})[robot] = None
     for (task, note), robots in found.items():
         yield f"task '{task}', {', '.join(robots)}: {note}"
+
+
+def _past_corridors(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> Iterator[str]:
+    """Yield where robots go past corridors from task to task."""
+    for name, mine in steps.items():
+        yield from crossings(name, all_steps(mine), scene.corridors_of(scene.robot(name)))
 
 
 def _unstated_flow(scene: Scene) -> Iterator[str]:

@@ -6,8 +6,9 @@ comes too near to one at every height of the corridor, the robot cannot use it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from math import dist
 from typing import Literal
 
 import shapely
@@ -16,7 +17,7 @@ from mmrs_core.diagnostics import lengths
 from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import Area, Corridor, Kinematics, Point, Position, Robot, Transit
-from mmrs_core.scene.plans import Step
+from mmrs_core.scene.plans import Recover, Serve, Step
 
 Direction = Literal["in", "out"]
 
@@ -148,10 +149,34 @@ def _misfit(corridor: Corridor, clearance: float, kinematics: Kinematics) -> str
         return f"{name} is {has} high, {least} are needed: {short} too low"
     low, high = _band(corridor, clearance, kinematics)
     if low > high + _SLACK:
+        begin, end = f"{round(low, 2):g} m", f"{round(high, 2):g} m"
         if corridor.low + clearance > kinematics.ceiling:
-            return f"{name} begins {low:g} m up for it, it may go up to {high:g} m: {low - high:.1f} m short"
-        return f"{name} ends {high:g} m up for it, it may go down to {low:g} m: {low - high:.1f} m short"
+            return f"{name} begins {begin} up for it, it may go up to {end}: {low - high:.1f} m short"
+        return f"{name} ends {end} up for it, it may go down to {begin}: {low - high:.1f} m short"
     return ""
+
+
+def crossings(name: str, steps: Iterable[Step], corridors: Sequence[Corridor]) -> Iterator[str]:
+    """Yield where a robot goes past corridors from task to task: one lies in front of them.
+
+    That is where the outer end of a corridor in is the nearest of all their ends.
+    """
+    ends = [(each.way_in[end][:2], end) for each in corridors if each.way_in for end in (0, -1)]
+    before: tuple[str, int] | None = None
+    for step in steps if ends else ():
+        if isinstance(step, Recover):
+            before = None
+        elif isinstance(step, Serve):
+            first, last = (
+                min((dist(place[:2], end), side) for end, side in ends)[1]
+                for place in (step.stroke.points[0], step.stroke.points[-1])
+            )
+            if before is not None and before[0] != step.task and before[1] != first:
+                yield (
+                    f"'{name}' goes from task '{before[0]}' to task '{step.task}' past its corridors:"
+                    " one of them lies in front of these"
+                )
+            before = (step.task, last)
 
 
 def gone_through(steps: Iterable[Step], corridors: Sequence[Corridor]) -> dict[str, list[str]]:

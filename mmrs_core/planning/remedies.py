@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice
+from itertools import islice, product
 from math import ceil, dist, floor, inf
 
 from mmrs_core.planning.jobs import Job
@@ -140,19 +140,39 @@ def _corridors(team: Team, task: str, why: str) -> Iterator[str]:
 
 def _opened(scene: Scene, corridor: Corridor, robot: Robot) -> Iterator[tuple[str, tuple[Corridor, ...]]]:
     """Yield changes of a corridor that may let a robot through, in words, with the corridors of the scene."""
-    wide = ceil(200.0 * robot.clearance - 1e-9) / 100.0
-    changes = {
-        f"a width of {wide:g} m of corridor '{corridor.name}'": replace(corridor, width=wide),
-        f"no minHeight of corridor '{corridor.name}'": replace(corridor, low=-inf),
-        f"no maxHeight of corridor '{corridor.name}'": replace(corridor, high=inf),
-    }
-    for words, changed in changes.items():
-        if changed != corridor:
-            yield words, tuple(changed if each is corridor else each for each in scene.corridors)
-    types = {each.type.name for each in scene.robots} - {robot.type.name}
-    others = replace(corridor, types=frozenset(types if corridor.types is None else corridor.types & types))
-    words = f"robotTypes of corridor '{corridor.name}' without '{robot.type.name}'"
-    yield words, tuple(others if each is corridor else each for each in scene.corridors)
+    needed, kinematics = 2.0 * robot.clearance, robot.kinematics
+    floor_up, ceiling = (kinematics.floor, kinematics.ceiling) if kinematics is not None else (-inf, inf)
+    wide = max(corridor.width, _up(needed))
+    low = min(corridor.low, -_up(max(needed - corridor.high, robot.clearance - ceiling)))
+    high = max(corridor.high, _up(max(corridor.low + needed, floor_up + robot.clearance)))
+    widths = [(corridor.width, ""), (wide, f"a width of {wide:g} m")]
+    heights = [
+        (corridor.low, corridor.high, ""),
+        (low, corridor.high, f"a minHeight of {low:g} m"),
+        (corridor.low, high, f"a maxHeight of {high:g} m"),
+        (-inf, corridor.high, "no minHeight"),
+        (corridor.low, inf, "no maxHeight"),
+    ]
+    tried = [corridor]
+    for (lower, upper, words), (width, more) in product(heights, widths):
+        changed = replace(corridor, width=width, low=lower, high=upper)
+        if changed not in tried:
+            tried.append(changed)
+            told = " and ".join(filter(None, (more, words)))
+            yield f"{told} of corridor '{corridor.name}'", _instead(scene, corridor, changed)
+    types = {each.type.name for each in scene.robots} if corridor.types is None else corridor.types
+    if others := types - {robot.type.name}:
+        words = f"robotTypes of corridor '{corridor.name}' without '{robot.type.name}'"
+        yield words, _instead(scene, corridor, replace(corridor, types=frozenset(others)))
+
+
+def _up(metres: float) -> float:
+    """Return a length rounded up to centimetres."""
+    return ceil(100.0 * metres - 1e-9) / 100.0 if abs(metres) < inf else metres
+
+
+def _instead(scene: Scene, corridor: Corridor, changed: Corridor) -> tuple[Corridor, ...]:
+    return tuple(changed if each is corridor else each for each in scene.corridors)
 
 
 def _homes(team: Team, jobs: Sequence[Job], task: str, name: str, index: int) -> Iterator[str]:

@@ -70,7 +70,7 @@ def _narrow(corridor: Element, models: ModelSet) -> Iterator[Finding]:
 
 def _short(word: str, has: float, needed: float) -> str:
     told, least = lengths(has, needed)
-    return f"is {told} {word}, but the smallest of its robots needs {least}"
+    return f"is {told} {word}, but the smallest of its robots needs more than {least}"
 
 
 def _unknown_types(corridor: Element, models: ModelSet) -> Iterator[Finding]:

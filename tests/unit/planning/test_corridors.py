@@ -147,20 +147,25 @@ def test_of_two_corridors_one_that_is_blocked_is_not_taken():
             replace(NORTH, low=30.0, high=31.0),
             (),
             "is 1.00 m high, 2.00 m are needed: 1.00 m too low",
-            "for 'r1' no minHeight of corridor 'north gate'",
+            "for 'r1' a minHeight of 29 m of corridor 'north gate'",
         ),
         (
             replace(NORTH, low=150.0),
             (),
             "begins 151 m up for it, it may go up to 120 m: 31.0 m short",
-            "for 'r1' no minHeight of corridor 'north gate'",
+            "for 'r1' a minHeight of 119 m of corridor 'north gate'",
+        ),
+        (
+            replace(NORTH, width=1.2, low=30.0, high=31.0),
+            (),
+            "is 1.20 m wide, 2.00 m are needed: 0.80 m too narrow",
+            "for 'r1' a width of 2 m and a minHeight of 29 m of corridor 'north gate'",
         ),
         (
             NORTH,
             (box("wall", 40.0, 102.0, 60.0, 105.0),),
             "is blocked by 'wall': 1.00 m too near to its line",
-            "for 'r1' a passage through 'wall' or"
-            " for 'r1' robotTypes of corridor 'north gate' without 'quad'",
+            "for 'r1' a passage through 'wall'",
         ),
     ],
 )
