@@ -214,7 +214,9 @@ def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) 
     if best is None:
         if refusal is None:
             raise InfeasibleError("no plan")
-        raise _UnexplainedError("no plan keeps robots apart", partial(_too_near, team, jobs, refusal))
+        raise _UnexplainedError(
+            "no plan was found that keeps robots apart", partial(_too_near, team, jobs, refusal)
+        )
     return best
 
 

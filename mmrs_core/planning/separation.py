@@ -98,7 +98,7 @@ def separated(team: Team, plan: Plan) -> Plan:
         plan: of the team.
 
     Raises:
-        TooNearError: waiting does not help.
+        TooNearError: waiting did not help.
     """
     least = distance_to_keep(team.scene)
     if least is None:
@@ -390,7 +390,7 @@ def _words(conflict: Conflict, least: float, homes: Mapping[str, Position]) -> s
     return (
         f"robots '{conflict.first}' and '{conflict.second}' come within {conflict.distance:.1f} m"
         f" after {conflict.time:.0f} s{at_home}{near}, {least:g} m are required:"
-        f" {least - conflict.distance:.1f} m short; waiting does not help"
+        f" {least - conflict.distance:.1f} m short, and waiting did not help"
     )
 
 

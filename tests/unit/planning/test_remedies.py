@@ -164,7 +164,7 @@ def test_a_distance_between_robots_that_is_proposed_can_be_kept():
     team = (robot("r1"), robot("r2", (50.0, 0.0, 0.0)))
     whole = scene(team, {"a": {"r1": visit((50.0, 0.0, 4.0))}}, minimum_separation=6.0)
     (least,) = re.findall(
-        r"short; waiting does not help; a minimumSeparation of ([\d.]+) m would do", refusal(whole)
+        r"short, and waiting did not help; a minimumSeparation of ([\d.]+) m would do", refusal(whole)
     )
     assert plan(replace(whole, minimum_separation=float(least)))
     refusal(replace(whole, minimum_separation=float(least) + 0.2))
