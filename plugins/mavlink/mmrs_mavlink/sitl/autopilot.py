@@ -222,7 +222,8 @@ class SimulatedAutopilot:
         """Set the vehicle up to move as in a mode; a PX4 keeps the speed that its mission has set."""
         body, pacing = self.body, self.settings.profile.pacing
         body.curved = mode in CURVED or not (self.flies or mode in MANUAL)
-        legs = pacing.step if self.flies and not body.curved else pacing.mission
+        one_by_one = mode == "guided" or (self.flies and not body.curved)
+        legs = pacing.step if one_by_one else pacing.mission
         if mode == "take_off":
             legs = pacing.upright
         body.figures = legs or pacing.step
