@@ -4,9 +4,9 @@ A sortie begins at Start, or at a Recharge. From there to the first move that wo
 the path must follow the line of a corridor from its one end to the other; from the last such move back home,
 that of a corridor in the other direction. All along, the robot keeps half its diagonal, the position error
 and the room that it needs to turn from both sides, and from the corridor's heights; where it cuts a corner or
-stops late, so much more. Between tasks, in a diversion, and where it ends in the field, it goes where it
-likes; in the field is where the nearest end of all corridors out is an inner one. A sortie on a branch
-without work follows one line in, and one out.
+stops late, so much more. Between tasks, in a diversion, and where it does not come out of the field after its
+last task, it goes where it likes; in the field is where the nearest end of all corridors out is an inner one.
+A sortie on a branch without work follows one line in, and one out.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ class _Walk:
         round_trips: whole paths of sorties that leave home without work, each as a path in and as one out.
         works: whether any move works, so that a sortie without such a move is known to be without work.
         gaps: sorties of which it is not known whether they lead to a task.
-        caveat: where the robot ends in the field; empty: nowhere.
+        caveat: where the robot ends without an exit; empty: nowhere.
     """
 
     def __init__(
@@ -217,11 +217,9 @@ class _Walk:
             parts, gaps = self._pieces([*chain[1:], end], ends)
             last = next((part[-1].end for part in reversed(parts) if part), None)
             where = last if parts and last is not None else (ends[-1] if ends else None)
-            if where is not None and not gaps and self._is_away(where) and self._is_inside(where):
+            if where is not None and not gaps and self._is_away(where) and self._stays(ends, where):
                 away = dist(where[:2], self._home[:2])
-                self.caveat = (
-                    f"it ends in the field, {away:.0f} m from its home, so that no exit is asked for"
-                )
+                self.caveat = f"it ends {away:.0f} m from its home, so that no exit is asked for"
                 continue
             self.ways.append(_Way(f"the path home from {self._named(work)}", False, parts, gaps, end))
 
@@ -238,6 +236,10 @@ class _Walk:
 
     def _is_away(self, place: Position) -> bool:
         return dist(place[:2], self._home[:2]) > _HOME
+
+    def _stays(self, ends: Sequence[Position], where: Position) -> bool:
+        """Return whether a robot that ends somewhere has not come out of the field after its last task."""
+        return self._is_inside(where) or any(not self._is_inside(each) for each in ends[-1:])
 
     def _is_inside(self, place: Position) -> bool:
         """Return whether the nearest end of all corridors out is an inner one."""

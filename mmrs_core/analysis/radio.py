@@ -17,13 +17,14 @@ import numpy as np
 from mmrs_core.analysis.distance import Floats
 from mmrs_core.analysis.figures import MissingFigureError, home_of, type_of
 from mmrs_core.analysis.motion import MovePath, motions
+from mmrs_core.analysis.stations import Station, stations_of
 from mmrs_core.analysis.verdicts import Margin, for_each_robot, judged
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.diagnostics import lengths
 from mmrs_core.scene import Position
 from mmrs_core.scene.attributes import number
-from mmrs_core.scene.relays import Relay, relays_of
+from mmrs_core.scene.relays import relays_of
 
 RANGE_NAME = "range"
 
@@ -32,47 +33,6 @@ _HALVINGS = 60
 
 _EQUAL = 1e-9
 """Metres by which one ball's lead over two equal ones is rounding."""
-
-
-@dataclass(frozen=True, slots=True)
-class Station:
-    """A relay, or the control station at home, that a robot reaches in a ball about it.
-
-    Attributes:
-        name: of the relay; empty: home.
-        centre: (east, north, up), metres.
-        radius: metres, the smaller of both ranges.
-    """
-
-    name: str
-    centre: Position
-    radius: float
-
-    @property
-    def words(self) -> str:
-        """Return what it is about."""
-        return f"relay '{self.name}'" if self.name else "home"
-
-
-def stations_of(
-    home: Position, reach: float, relays: Sequence[Relay]
-) -> tuple[list[Station], list[tuple[Relay, str]]]:
-    """Return where a robot is in range, home first, and the relays without a chain to its home, with why."""
-    chained = [Relay("", home, reach)]
-    left = list(relays)
-    for here in chained:
-        reached = [each for each in left if dist(here.position, each.position) <= min(here.range, each.range)]
-        chained.extend(reached)
-        left = [each for each in left if each not in reached]
-    stations = [Station(each.name, each.position, min(reach, each.range)) for each in chained]
-    return stations, [(each, _severed(each, chained)) for each in left]
-
-
-def _severed(relay: Relay, chained: Sequence[Relay]) -> str:
-    near = min(chained, key=lambda each: dist(each.position, relay.position) - min(each.range, relay.range))
-    away, allowed = lengths(dist(near.position, relay.position), min(near.range, relay.range))
-    words = Station(near.name, near.position, near.range).words
-    return f"it is {away} from {words}, they reach each other within {allowed}"
 
 
 def least_inside(points: Sequence[Position], stations: Sequence[Station]) -> tuple[float, Position, Station]:

@@ -324,9 +324,11 @@ class Travel:
         soonest, rates, latest = self.bounds(speed)
         quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop
         legs = list(pairwise(points))
-        uploaded = self.uploaded(speed) if len(legs) > 1 and self.kinematics.turning_radius > 0.0 else None
+        passes = self.kinematics.turning_radius > 0.0 or self.entries or self.exits
+        uploaded = self.uploaded(speed) if len(legs) > 1 and passes else None
         if uploaded is not None:
             most = sum(max(latest.from_stop_to_stop(*leg), uploaded.from_stop_to_stop(*leg)) for leg in legs)
+            most += (1.0 + self.kinematics.timing.spread) * self.kinematics.noticing
         else:
             most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
         return MoveSeconds(

@@ -8,7 +8,7 @@ import shapely
 
 from mmrs_core.analysis.constraints.findings import CONTEXT, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, sketch_of
-from mmrs_core.analysis.radio import stations_of
+from mmrs_core.analysis.stations import stations_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import child, children, number

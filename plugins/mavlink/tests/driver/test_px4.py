@@ -150,7 +150,7 @@ def test_a_vehicle_settles_near_its_target_although_it_estimates_that_it_moves(p
     guidance, place = mode_control.guidance, Geographic(42.37, 13.35, 20.0)
     mode_control.enter(modes.GUIDED)
     found = []
-    for seconds in (0.0, 5.0, 6.5, 7.0):
+    for seconds in (0.0, 3.0, 4.5, 7.0):
         guidance.aim(place if seconds < 7.0 else NORTH, 0.0, None)  # again, as if it might be lost
         autopilot.wire.say(here(north=north, seconds=seconds))
         eventually(lambda: telemetry.time() == seconds)  # noqa: B023
