@@ -33,7 +33,7 @@ LONGEST = {
     "Lost float": 205.0,
     "Objects in the pool": 396.0,
     "Outfall": 1210.0,
-    "Photos of a farm": 1068.0,
+    "Photos of a farm": 1122.0,
     "Recycling yard after a fire": 500.0,
     "Thermal inspection": 555.0,
     "Two fields": 193.0,
