@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.scene import Await, Branch, Plan, Recharge, RobotPlan, Serve, Signal, Step, all_steps
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from mmrs_core.simulation.run import SimulatedRun
     from mmrs_core.transformation.engine import Trace
     from mmrs_runtime.records.steps import StepRecord
+
+Key = TypeVar("Key")
+Value = TypeVar("Value")
 
 SAME = 0.01
 """Share by which times may differ that a bound of the planner is compared with."""
@@ -26,7 +29,11 @@ def as_simulated(plan: Plan, run: SimulatedRun, trace: Trace, robots: Collection
     planner's durations.
     """
     moves, spans = trace.moves(), _spans(run.records)
-    timed = tuple(_timed(each, _Retiming(each.robot, moves, spans)) for each in plan.robots)
+    own_moves, own_spans = _by_robot(moves), _by_robot(spans)
+    timed = tuple(
+        _timed(each, _Retiming(own_moves.get(each.robot, {}), own_spans.get(each.robot, {})))
+        for each in plan.robots
+    )
     served: dict[str, list[Step]] = {}
     for step in (step for each in timed for step in all_steps(each.steps) if isinstance(step, Serve)):
         served.setdefault(step.task, []).append(step)
@@ -73,22 +80,24 @@ def _spans(records: Iterable[StepRecord]) -> Mapping[tuple[str, str], tuple[floa
     return found
 
 
+def _by_robot(given: Mapping[tuple[str, Key], Value]) -> dict[str, dict[Key, Value]]:
+    """Return what is known of each robot."""
+    found: dict[str, dict[Key, Value]] = {}
+    for (robot, key), value in given.items():
+        found.setdefault(robot, {})[key] = value
+    return found
+
+
 class _Retiming:
     """Gives the steps of a robot the times of the moves that carry them out.
 
     Args:
-        moves: by robot and the step's number, as `all_steps` counts.
+        moves: by the step's number, as `all_steps` counts.
         spans: when each move that was made began and ended.
     """
 
-    def __init__(
-        self,
-        robot: str,
-        moves: Mapping[tuple[str, int], Sequence[str]],
-        spans: Mapping[tuple[str, str], tuple[float, float]],
-    ) -> None:
-        self._moves = {number: own for (name, number), own in moves.items() if name == robot}
-        self._spans = {move: span for (name, move), span in spans.items() if name == robot}
+    def __init__(self, moves: Mapping[int, Sequence[str]], spans: Mapping[str, tuple[float, float]]) -> None:
+        self._moves, self._spans = moves, spans
         self._count = 0
 
     def all(self, steps: Sequence[Step]) -> tuple[Step, ...]:
