@@ -96,13 +96,14 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
             margins.append(margin)
         elif margin is not None:
             gaps += way.gaps
-    for trip in walk.round_trips:
+    for there, back in walk.round_trips:
+        trip = (there, replace(back, parts=_beyond(there, tubes[True])))
         both = [_margin(robot, each, tubes[each.inwards], inf) for each in trip if tubes[each.inwards]]
         known = [each for each in both if each is not None and each.value >= 0.0]
         if walk.works and len(known) == len(both):
             margins += known
         else:
-            gaps.append(UnknownMove(trip[0].last, "no move before it names the task that it serves"))
+            gaps.append(UnknownMove(there.last, "no move before it names the task that it serves"))
     found = list(judged(NAME, robot, "m", margins, gaps)) or [_nothing(robot, walk)]
     for each in found:
         yield replace(each, caveat=walk.caveat) if each.status is Status.SAFE else each
@@ -112,6 +113,15 @@ def _nothing(robot: RobotProgram, walk: _Walk) -> Verdict:
     if walk.caveat:
         return safe(NAME, robot, "it goes where no corridor is asked for")
     return not_checked(NAME, robot, "it leaves home for no task")
+
+
+def _beyond(way: _Way, tubes: Sequence[tuple[str, Tube]]) -> tuple[tuple[Piece, ...], ...]:
+    """Return what of a path comes after it has led through a corridor; all of it where there is none."""
+    for number, part in enumerate(way.parts if tubes else ()):
+        ends = [piece for follows, piece in (tube.follows(part) for _, tube in tubes) if follows]
+        if ends:
+            return (part[min(ends) :], *way.parts[number + 1 :])
+    return () if tubes else way.parts
 
 
 def _tube(corridor: Corridor, line: tuple[Point, ...], own: float) -> Tube:

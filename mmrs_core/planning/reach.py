@@ -265,7 +265,9 @@ def remedies_for(
                 break
         else:
             continue
-        at = " and ".join("({:.0f}, {:.0f}, {:.0f})".format(*each.position) for each in chain)
+        at = " and ".join(
+            "({:.0f}, {:.0f}, {:.0f})".format(*(round(p) + 0.0 for p in each.position)) for each in chain
+        )
         yield f"{'a relay' if count == 1 else f'{count} relays'} of range {chain[0].range:.0f} m at {at}"
         break
     farthest = float(np.linalg.norm(points - np.array(robot.home), axis=1).max()) + needed

@@ -185,6 +185,13 @@ def test_a_branch_without_work_comes_through_in_and_out(north, status):
     assert through(*without).status is Status.UNKNOWN
 
 
+def test_a_branch_without_work_comes_in_before_it_goes_out():
+    beside = path("beside", (0.0, 40.0), (60.0, 40.0), (50.0, 0.0), (10.0, 0.0))
+    again = path("again", (50.0, 0.0), (60.0, -40.0), (0.0, -40.0), (0.0, 0.0))
+    moves = [*beside, *again, recharge("charge", 60.0), *out_and_in()]
+    assert through(*moves).status is Status.UNKNOWN
+
+
 def test_actions_of_devices_are_work_whatever_the_move_says():
     photo = go("photo", (0.0, 30.0, 0.0), task="t", rule="transit", after=(use("camera", "photo"),))
     assert through(photo, *out_and_in()).status is Status.VIOLATED
