@@ -308,6 +308,8 @@ class ModeControl:
         for attempt in count(1):
             self._be_in(self.guidance.climbs_in)
             self.start_motors()
+            # The vehicle may report a mode of its climb before it acknowledges the command.
+            self._accepted = self._accepted | frozenset(self.guidance.climbing())
             try:
                 command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.guidance.take_off(height))
                 self._follow_climb()

@@ -9,6 +9,7 @@ from flight_crew import manned, robot_of
 from patience import until
 
 from mmrs_mavlink.services.uploads import uploads_of
+from mmrs_mavlink.vehicles import px4
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -45,20 +46,42 @@ def test_a_px4_that_takes_another_height_for_home_as_it_climbs_goes_to_the_right
         assert body.position[2] == pytest.approx(12.0, abs=0.6)
 
 
-def test_the_height_of_home_when_the_motors_start_counts():
+def test_the_height_of_home_when_the_motors_start_counts(monkeypatch):
     with manned(ROBOT, firmware="px4") as made:
         vehicle, autopilot, link = prepared(made), made.simulated.autopilot, made.link
+        monkeypatch.setattr(px4, "FRESH_SECONDS", 10.0 * made.clock.speedup)
         raise_home(made, -5.0)
         until(lambda: vehicle.telemetry.here().height > 4.0)
         hears = link.hears
 
         def hears_late(message, sender):
-            armed = next((time for time, number, _ in autopilot.history if number == 400), autopilot.time)
-            early = armed < autopilot.time < armed + 2.0
-            if not (early and message.get_type() == "GLOBAL_POSITION_INT"):
+            armed = next((time for time, number, _ in autopilot.history if number == 400), None)
+            position = message.get_type() == "GLOBAL_POSITION_INT"
+            if armed is None or not position or message.time_boot_ms / 1000.0 > armed + 2.0:
                 hears(message, sender)
 
         link.hears = hears_late
         vehicle.take_off(10.0)
         commanded = next(params for _, number, params in autopilot.history if number == 22)
         assert commanded[6] == pytest.approx(autopilot.settings.altitude + 10.0, abs=0.1)
+
+
+def test_a_take_off_that_is_shown_before_it_is_acknowledged_is_not_external_control():
+    with manned(ROBOT, firmware="px4") as made:
+        vehicle, link = prepared(made), made.link
+        hears, held, beats = link.hears, [], []
+
+        def hears_answers_late(message, sender):
+            if message.get_type() == "COMMAND_ACK" and message.command == 22 and len(beats) < 2:
+                held.append((message, sender))
+                return
+            hears(message, sender)
+            if held and message.get_type() == "HEARTBEAT":
+                beats.append(message)
+                if len(beats) == 2:
+                    hears(*held[0])
+
+        link.hears = hears_answers_late
+        vehicle.take_off(10.0)
+        assert len(beats) >= 2
+        assert vehicle.state().place.height == pytest.approx(10.0, abs=0.6)
