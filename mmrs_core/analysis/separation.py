@@ -1,8 +1,8 @@
 """Whether robots keep apart, in motion and where they stand, from the first moment to the last.
 
-Two occupations are apart if the paths are far enough from each other, if they never overlap in time, if
-one is over before the other begins because robots wait for each other, or if at every time the parts
-of the paths on which the robots may then be are far enough from each other. What then is left is
+Two occupations are apart if at every time the parts of the paths on which the robots may then be are far
+enough from each other (see `nearness`), or if one is over before the other begins because robots wait for
+each other. What then is left is
 violated where both are certainly there at one time, however uncertain times are, or cannot pass each
 other (see `passing`), and otherwise undecided.
 Times are those of the kinds of moves: where these reckon without wind and accelerations, so does this
@@ -13,25 +13,20 @@ check, and only waits for each other are proof. Robots at homes that are nearer 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import dist, inf
 
-import numpy as np
-import shapely
-from numpy.typing import NDArray
-
-from mmrs_core.analysis.distance import paired_distances
 from mmrs_core.analysis.encounters import (
     Encounter,
     ProvenOrder,
     apart,
     certain_encounter,
     nearest_encounter,
-    required,
 )
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.analysis.motion import motions
+from mmrs_core.analysis.nearness import legs_of, near_pairs
 from mmrs_core.analysis.occupations import HOME_SPOT, Occupation, occupations_of
 from mmrs_core.analysis.passing import in_sequence, must_meet
 from mmrs_core.analysis.verdicts import TOLERANCE, UnknownMove, unknown, unknown_moves
@@ -40,9 +35,6 @@ from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 from mmrs_core.diagnostics import lengths
 
 NAME = "separation"
-
-_A_SLICE = 2000
-"""Occupations that begin in one slice of time, about."""
 
 
 def _run(input: CheckInput) -> Iterator[Verdict]:
@@ -115,7 +107,7 @@ def _encounters(
 ) -> Iterator[Encounter]:
     """Yield the encounters; add the robots that are excused, and how near their homes are, to `excused`."""
     order: ProvenOrder | None = None
-    for i, j in near_occupations(occupations, needed):
+    for i, j in near_pairs(legs_of(occupations), needed).tolist():
         one, other = occupations[i], occupations[j]
         if _excused(one, other, needed):
             excused[one.robot, other.robot] = _between_homes(one, other)
@@ -124,48 +116,6 @@ def _encounters(
         if not order.keeps_apart(one, other):
             found = certain_encounter(one, other, needed, order) or nearest_encounter(one, other, needed)
             yield from [found] if found is not None else []
-
-
-def near_occupations(occupations: Sequence[Occupation], needed: float) -> list[tuple[int, int]]:
-    """Return the pairs of different robots whose paths are too near and whose times overlap, in order."""
-    if not occupations:
-        return []
-    pairs = np.concatenate([*_near_boxes(occupations, needed)])
-    ends = np.array([(each.points[0], each.points[-1]) for each in occupations])
-    bent = np.array([len(each.points) > 2 for each in occupations])[pairs].any(axis=1)
-    away = paired_distances(*(ends[pairs[:, one], side] for one in (0, 1) for side in (0, 1)))
-    found = [
-        (i, j)
-        for (i, j), curved, straight in zip(pairs.tolist(), bent.tolist(), away.tolist(), strict=True)
-        if (apart(occupations[i].points, occupations[j].points) if curved else straight)
-        < required(occupations[i], occupations[j], needed)
-    ]
-    return sorted(found)
-
-
-def _near_boxes(occupations: Sequence[Occupation], needed: float) -> Iterator[NDArray[np.intp]]:
-    """Yield (n, 2) pairs, the lower index first, of different robots whose boxes in space and time are near.
-
-    Slice of time by slice of time, a pair in that in which the later one begins: an index over all the time
-    would find robots that pass the same place one long after the other.
-    """
-    boxes = np.array([_box(each) for each in occupations])
-    times = np.array([(each.begin, each.end) for each in occupations])
-    robots = np.unique([each.robot for each in occupations], return_inverse=True)[1]
-    low, high = boxes[:, :3], boxes[:, 3:]
-    reach = needed + 2.0 * max(each.radius for each in occupations)
-    order = np.argsort(times[:, 0], kind="stable")
-    place = np.argsort(order)
-    for begun in np.array_split(order, max(1, len(order) // _A_SLICE)):
-        present = np.flatnonzero((times[:, 0] <= times[begun[-1], 0]) & (times[:, 1] > times[begun[0], 0]))
-        shapes = shapely.STRtree(shapely.box(*low[present, :2].T, *high[present, :2].T))
-        grown = shapely.box(*(low[begun, :2] - reach).T, *(high[begun, :2] + reach).T)
-        i, j = shapes.query(grown)
-        i, j = begun[i], present[j]
-        near = (place[i] > place[j]) & (robots[i] != robots[j])
-        near &= np.maximum(times[i, 0], times[j, 0]) < np.minimum(times[i, 1], times[j, 1])
-        near &= (low[i, 2] <= high[j, 2] + reach) & (low[j, 2] <= high[i, 2] + reach)
-        yield np.sort(np.column_stack([i[near], j[near]]), axis=1)
 
 
 def _excused(one: Occupation, other: Occupation, needed: float) -> bool:
@@ -202,11 +152,6 @@ def _over_home(occupation: Occupation, neighbour: Occupation, needed: float) -> 
         return occupation.points[0][2] < column.ceiling
     above = column.above_ceiling(occupation.points)
     return not above or apart(above, neighbour.points) >= needed - TOLERANCE
-
-
-def _box(occupation: Occupation) -> tuple[float, ...]:
-    sides = [*zip(*occupation.points, strict=True)]
-    return (*map(min, sides), *map(max, sides))
 
 
 def _worst(encounters: Iterable[Encounter]) -> list[Encounter]:

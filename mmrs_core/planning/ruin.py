@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from mmrs_core.geometry.compilation import can_compile, compiled
 from mmrs_core.planning import ruin_loops
-from mmrs_core.planning.compilation import can_compile, compiled
 from mmrs_core.planning.effort import SLICE
 from mmrs_core.planning.ruin_loops import Field, Room, Tours
 

@@ -13,8 +13,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from mmrs_core.geometry.compilation import can_compile, compiled
 from mmrs_core.planning import box_pairs
-from mmrs_core.planning.compilation import can_compile, compiled
 
 Floats: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]

@@ -11,8 +11,8 @@ import shapely
 from numpy.typing import NDArray
 
 from mmrs_core.geometry.clearance import EPSILON
+from mmrs_core.geometry.compilation import can_compile, compiled
 from mmrs_core.planning import sight
-from mmrs_core.planning.compilation import can_compile, compiled
 from mmrs_core.planning.obstacles import Flags, Floats, Obstacles, outlines_of
 from mmrs_core.planning.sight import DIRECTIONS, FULL, NONE, START, UNKNOWN, Columns, Memory
 

@@ -12,10 +12,10 @@ from hypothesis import assume, settings
 from hypothesis import given as for_all
 from hypothesis import strategies as st
 
-from mmrs_core.analysis import separation
-from mmrs_core.analysis.encounters import apart, required
+from mmrs_core.analysis import nearness
+from mmrs_core.analysis.encounters import nearest_encounter
+from mmrs_core.analysis.nearness import Legs, legs_of, near_pairs, nearest_at_once
 from mmrs_core.analysis.occupations import Occupation
-from mmrs_core.analysis.separation import near_occupations
 from mmrs_core.contributions.checks import Status
 from mmrs_core.testing.small_programs import go, hold, notify, robot
 
@@ -167,27 +167,65 @@ def test_robots_called_violated_on_one_line_come_too_near_however_long_their_mov
 
 
 def occupation(rng, owners):
-    """Return a straight path, or a stand, of a random robot at some time; some have no end."""
+    """Return a path, or a stand, of a random robot at some time; some have no end, some robots no haste."""
     begin = float(rng.uniform(0.0, 100.0))
-    end = inf if rng.random() < 0.1 else begin + float(rng.uniform(0.0, 20.0))
     points = [tuple(each) for each in rng.uniform(0.0, 60.0, (int(rng.integers(1, 4)), 3)).tolist()]
+    least = tuple(rng.uniform(4.0, 10.0, len(points) - 1).tolist())
+    end = inf if rng.random() < 0.1 else begin + sum(least) + float(rng.choice([0.0, 1.0, 20.0]))
     radius = float(rng.choice([0.0, 3.0]))
-    robot, least = f"r{rng.integers(owners)}", (1.0,) * (len(points) - 1)
+    robot = f"r{rng.integers(owners)}"
     return Occupation(robot, 0, False, tuple(points), radius, begin, end, least, (inf, -inf), None)
 
 
-@settings(max_examples=many(60))
-@for_all(st.integers(0, 2**32), st.integers(0, 80), st.sampled_from([1, 7, 2000]))
-def test_near_occupations_are_all_those_whose_paths_and_times_are_too_near(seed, count, a_slice):
+@settings(max_examples=many(40))
+@for_all(
+    st.integers(0, 2**32), st.integers(0, 40), st.sampled_from([(1, 1), (1000, 1), (1000, 7), (1000, 2000)])
+)
+def test_near_pairs_are_all_those_on_which_robots_may_be_too_near_at_one_time(seed, count, sizes):
     rng = np.random.default_rng(seed)
     known = [occupation(rng, 4) for _ in range(count)]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(separation, "_A_SLICE", a_slice)
-        found = near_occupations(known, 8.0)
-    assert found == [
-        (i, j)
-        for i, j in combinations(range(count), 2)
-        if known[i].robot != known[j].robot
-        and max(known[i].begin, known[j].begin) < min(known[i].end, known[j].end)
-        and apart(known[i].points, known[j].points) < required(known[i], known[j], 8.0)
-    ]
+        patch.setattr(nearness, "_MANY", sizes[0])
+        patch.setattr(nearness, "_A_SLICE", sizes[1])
+        found = [tuple(each) for each in near_pairs(legs_of(known), 8.0).tolist()]
+
+    def met(needed):
+        return {
+            (i, j)
+            for i, j in combinations(range(count), 2)
+            if known[i].robot != known[j].robot
+            and max(known[i].begin, known[j].begin) < min(known[i].end, known[j].end)
+            and nearest_encounter(known[i], known[j], needed) is not None
+        }
+
+    # Robots make at most 26 m/s, and an encounter is told to 0.01 s.
+    assert met(8.0 - 0.6) <= set(found) <= met(8.0)
+    assert found == sorted(set(found))
+
+
+@settings(max_examples=many(100))
+@for_all(st.integers(0, 2**32))
+def test_robots_are_as_near_as_on_those_shares_of_their_legs_on_which_they_may_be_at_one_time(seed):
+    rng = np.random.default_rng(seed)
+    ends = rng.uniform(0.0, 20.0, (2, 2, 3)) * rng.choice([0.0, 1.0], (2, 1, 3))
+    if rng.random() < 0.3:
+        ends[:, 1] = ends[:, 0] + rng.uniform(-9.0, 9.0, 3)
+    if rng.random() < 0.2:
+        ends[0, 1] = ends[0, 0]
+    begins, least = rng.uniform(0.0, 5.0, 2), rng.choice([0.0, 4.0, 9.0], 2)
+    times = np.stack([begins, begins + least + rng.choice([0.0, 2.0, 20.0, inf], 2)], axis=1)
+    assume(max(times[:, 0]) < min(times[:, 1]) - 1e-6)
+    numbers = np.arange(2)
+    legs = Legs(numbers, numbers, ends, times, least, np.zeros(2))
+    (nearest,) = nearest_at_once(legs, numbers[:1], numbers[1:])
+    s, r = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 201), indexing="ij")
+    shares, step = (s, r), np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() / 200
+    soonest = [times[k, 0] + shares[k] * least[k] for k in (0, 1)]
+    latest = [times[k, 1] - (1.0 - shares[k]) * least[k] for k in (0, 1)]
+    # Shares within one step of such at which they may be at one time, and those at which they surely may.
+    spare = max(least) / 100
+    places = [ends[k, 0] + shares[k][..., None] * (ends[k, 1] - ends[k, 0]) for k in (0, 1)]
+    apart_at = np.linalg.norm(places[0] - places[1], axis=2)
+    late = np.maximum(*soonest) - np.minimum(*latest)
+    assert nearest <= apart_at[late <= -1e-6].min(initial=inf) + 1e-6
+    assert nearest >= apart_at[late <= spare].min() - step

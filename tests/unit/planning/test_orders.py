@@ -7,8 +7,8 @@ from random import Random
 import pytest
 from plain_fields import field, places
 
+from mmrs_core.geometry.compilation import can_compile
 from mmrs_core.planning import ruin
-from mmrs_core.planning.compilation import can_compile
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.orders import OrderSearch
 

@@ -4,8 +4,8 @@ from math import dist, inf
 import pytest
 from plain_fields import field, places
 
+from mmrs_core.geometry.compilation import can_compile
 from mmrs_core.planning import ruin
-from mmrs_core.planning.compilation import can_compile
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.ruin import Search, stops_of
 

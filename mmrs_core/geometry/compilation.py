@@ -1,7 +1,7 @@
 """Loops over columns of numbers: compiled where that is worth it and numba is installed (extra `fast`).
 
-Results are the same as without it. Such loops stand in modules of their own, `sight` and `box_pairs`, as
-plain functions that call each other.
+Results are the same as without it. Such loops stand in modules of their own, as plain functions that call
+each other.
 """
 
 from __future__ import annotations
