@@ -16,7 +16,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -32,9 +32,9 @@ from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.programs import move, program
 from mmrs_mavlink.plugin.backend import MAVLINK
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
-from mmrs_runtime.engine.order_sources import receive_orders
-from mmrs_runtime.engine.orders import LAND, Orders
+from mmrs_runtime.control import Control
 from mmrs_runtime.orders.ordering import give
+from mmrs_runtime.orders.orders import LAND, Orders
 from mmrs_runtime.slots import LocalSlots
 
 ROBOT = "drone"
@@ -92,7 +92,7 @@ def hovering() -> Iterator[Path]:
             say=lambda words: None,
         )
         flight = threading.Thread(target=lambda: run_live(live_run))
-        with receive_orders(folder, live_run.run, (ROBOT,), control, lambda robot: {}):
+        with closing(Control(folder, live_run.run, (ROBOT,), control, lambda robot: {})):
             flight.start()
             while vehicle.autopilot.body.position[2] < HEIGHT - 0.4:
                 time.sleep(0.1)

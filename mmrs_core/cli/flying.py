@@ -32,14 +32,13 @@ from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_runtime.bus.carriers.carrier import Carrier
 from mmrs_runtime.bus.program_bus import begin_all, slots_path
-from mmrs_runtime.control import Taken
+from mmrs_runtime.control import Control, Status, Taken
 from mmrs_runtime.engine.clocks import FollowingClock, RealClock
 from mmrs_runtime.engine.live import exit_code
-from mmrs_runtime.engine.order_sources import Status, receive_orders, stopping
-from mmrs_runtime.engine.orders import Orders
 from mmrs_runtime.engine.resuming import over_by
 from mmrs_runtime.engine.terms import Ending
 from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.orders.orders import Orders, stopping
 from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
@@ -144,7 +143,7 @@ def _hear(
     stack: ExitStack, folder: Path, run: str, robots: tuple[str, ...], orders: Orders, status: Status
 ) -> None:
     try:
-        stack.enter_context(receive_orders(folder, run, robots, orders, status))
+        stack.callback(Control(folder, run, robots, orders, status).close)
     except Taken as error:
         raise typer.BadParameter(f"--log {folder}: {error}") from error
 

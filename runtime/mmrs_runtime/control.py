@@ -21,7 +21,7 @@ import secrets
 import socket
 import threading
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from errno import EEXIST
 from pathlib import Path
@@ -30,7 +30,7 @@ from typing import Any
 from .callers import Callers
 from .orders.channels import network, object_in
 from .orders.ordering import PATTERN
-from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, OrderKind, Receipt
+from .orders.orders import ANSWER, ORDERS, STATUS, Orders
 
 FILE = "control.json"
 ANSWER_SECONDS = 30.0
@@ -59,13 +59,14 @@ class Taken(Exception):  # noqa: N818  # what the robot is
 
 
 class Control:
-    """Listens for orders in threads of its own, and hands them to the robots' inboxes."""
+    """Listens for orders in threads of its own, and gives them to the robots of a run."""
 
     def __init__(
         self,
         folder: Path,
         run: str,
-        inboxes: Mapping[str, Inbox],
+        robots: Sequence[str],
+        orders: Orders,
         status: Status,
         *,
         greeting_seconds: float = GREETING_SECONDS,
@@ -75,7 +76,8 @@ class Control:
         Args:
             folder: of the logs; where the channel is announced.
             run: identifier of the run.
-            inboxes: by robot; all robots of this process.
+            robots: all of this process.
+            orders: of the run.
             status: the status of a robot, as JSON has it; called from any thread.
             greeting_seconds: that a client has for the line of an order.
 
@@ -83,7 +85,7 @@ class Control:
             Taken: another process runs one of these robots with its logs in that folder.
             OSError: the channel cannot be opened or announced.
         """
-        self._inboxes = dict(inboxes)
+        self._robots, self._orders = tuple(robots), orders
         self._status = status
         self._token = secrets.token_urlsafe(24)
         self._late = {"error": f"an order is one whole line within {greeting_seconds:g} s"}
@@ -97,11 +99,11 @@ class Control:
             "run": run,
             "machine": socket.gethostname(),
             "network": network(),
-            "robots": list(self._inboxes),
+            "robots": list(self._robots),
         }
         try:
             self._path = _announce(folder, json.dumps(facts) + "\n")
-            _refuse_rivals(self._path, self._inboxes)
+            _refuse_rivals(self._path, self._robots)
         except (OSError, Taken):
             self._server.close()
             raise
@@ -158,28 +160,36 @@ class Control:
 
     def _replies(self, given: Mapping[str, Any]) -> Iterator[Mapping[str, object]]:
         try:
-            order, robots, seconds = self._understood(given)
+            robots, order, seconds = self._understood(given)
         except ValueError as error:
             yield {"error": str(error)}
             return
-        if order.name == STATUS:
+        if order == STATUS:
             yield from ({"robot": robot, **self._status(robot)} for robot in robots)
         else:
-            yield from self._obeyed(order, robots, seconds)
+            question, answer = (given["question"], given["answer"]) if order == ANSWER else ("", False)
+            yield from self._obeyed(order, robots, seconds, question, answer)
         yield {"done": True}
 
-    def _obeyed(self, order: OrderKind, robots: list[str], seconds: float) -> Iterator[Mapping[str, object]]:
-        answers: queue.SimpleQueue[Receipt] = queue.SimpleQueue()
+    def _obeyed(
+        self, order: str, robots: list[str], seconds: float, question: str, answer: bool
+    ) -> Iterator[Mapping[str, object]]:
+        answers: queue.SimpleQueue[tuple[str, str | None, float]] = queue.SimpleQueue()
+        begun = time.monotonic()
+
+        def answered(robot: str, why: str | None) -> None:
+            answers.put((robot, why, time.monotonic() - begun))
+
         for robot in robots:
-            self._inboxes[robot].give(order, answers.put)
-        missing, until = set(robots), time.monotonic() + seconds
+            self._orders.give(order, (robot,), question=question, answer=answer, answered=answered)
+        missing = set(robots)
         while missing:
             try:
-                receipt = answers.get(timeout=max(0.0, until - time.monotonic()))
+                robot, why, took = answers.get(timeout=max(0.0, begun + seconds - time.monotonic()))
             except queue.Empty:
                 break
-            missing.discard(receipt.robot)
-            yield _line(receipt.robot, order, bool(receipt.confirmed), receipt.seconds, receipt.why)
+            missing.discard(robot)
+            yield _line(robot, order, why is None, took, why or "")
         for robot in sorted(missing):
             yield _line(robot, order, False, seconds, "no answer yet; it will still be obeyed")
 
@@ -198,42 +208,40 @@ class Control:
             raise ValueError("token: is not that of this process")
         return given
 
-    def _understood(self, given: Mapping[str, Any]) -> tuple[OrderKind, list[str], float]:
-        robots = given.get("robots", list(self._inboxes))
+    def _understood(self, given: Mapping[str, Any]) -> tuple[list[str], str, float]:
+        robots = given.get("robots", list(self._robots))
         if not isinstance(robots, list) or not robots or not all(isinstance(robot, str) for robot in robots):
             raise ValueError("robots: must be a list of names")
-        unknown = [robot for robot in robots if robot not in self._inboxes]
+        unknown = [robot for robot in robots if robot not in self._robots]
         if unknown:
-            known = ", ".join(map(ascii, self._inboxes))
+            known = ", ".join(map(ascii, self._robots))
             raise ValueError(f"{', '.join(map(ascii, unknown))}: no robot of this process, which has {known}")
-        return _order(given), list(dict.fromkeys(robots)), _seconds(given.get("seconds", ANSWER_SECONDS))
+        return list(dict.fromkeys(robots)), _order(given), _seconds(given.get("seconds", ANSWER_SECONDS))
 
 
 def _written(reply: Mapping[str, object]) -> bytes:
     return json.dumps(reply).encode("ascii") + b"\n"
 
 
-def _line(robot: str, order: OrderKind, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
+def _line(robot: str, order: str, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
     return {
         "robot": robot,
-        "order": order.name,
+        "order": order,
         "confirmed": confirmed,
         "seconds": round(seconds, 4),
         "why": why,
     }
 
 
-def _order(given: Mapping[str, Any]) -> OrderKind:
+def _order(given: Mapping[str, Any]) -> str:
     name = given.get("order")
     if not isinstance(name, str) or name not in ORDERS:
         shown = f"{name!r} is" if isinstance(name, str) else "is"
         raise ValueError(f"order: {shown} none of {', '.join(ORDERS)}")
-    if name != ANSWER:
-        return OrderKind(name)
     question, answer = given.get("question"), given.get("answer")
-    if not isinstance(question, str) or not question or not isinstance(answer, bool):
+    if name == ANSWER and not (isinstance(question, str) and question and isinstance(answer, bool)):
         raise ValueError("answer: needs a question, and an answer that is true or false")
-    return OrderKind(ANSWER, question, answer)
+    return name
 
 
 def _seconds(given: object) -> float:

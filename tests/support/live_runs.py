@@ -15,7 +15,7 @@ from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, robot_type
 from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.orders import STOP, Orders
+from mmrs_runtime.orders.orders import STOP, Orders
 from mmrs_runtime.slots import LocalSlots
 from mmrs_runtime.vehicle import Vehicle
 

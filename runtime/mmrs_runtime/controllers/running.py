@@ -11,17 +11,16 @@ from itertools import chain
 from .. import program as runtime
 from ..bus import Incomplete
 from ..bus.program_bus import ProgramBus, begin_all, shared_bus, strangers_of
-from ..control import Taken
+from ..control import Control, Taken
 from ..engine.clocks import RealClock
 from ..engine.connecting import Live
 from ..engine.live import FAILED, INTERRUPTED, LINK, LiveRun, exit_code, run_live
-from ..engine.order_sources import receive_orders, stopping
-from ..engine.orders import Orders
 from ..engine.preflight import NotReadyError
 from ..engine.resuming import over_by, restore
 from ..engine.terms import Ending
 from ..faults import LINK_LOST, FaultError, reason_of
 from ..injection import Rehearsal
+from ..orders.orders import Orders, stopping
 from ..policies import NOTHING
 from ..program import Move, Notify, Program, SlotId
 from ..records.blackbox import BlackBox, black_box_path
@@ -228,9 +227,8 @@ def _hear(
 ) -> None:
     """Connect the run to orders from other processes."""
     try:
-        stack.enter_context(
-            receive_orders(options.log, options.run, robots, live_run.orders, live_run.status_board.status)
-        )
+        status = live_run.status_board.status
+        stack.callback(Control(options.log, options.run, robots, live_run.orders, status).close)
     except Taken as error:
         parser.error(f"--log {options.log}: {error}")
     except OSError as error:

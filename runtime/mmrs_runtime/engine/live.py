@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..bus import Incomplete
 from ..faults import LINK_LOST, ORDERED, STOPPED, reason_of
+from ..orders.orders import Orders
 from ..policies import Policy
 from ..program import Program
 from ..records.steps import StepRecord
@@ -20,7 +21,6 @@ from ..vehicle import Condition, Vehicle
 from .clocks import RealClock
 from .connecting import Live, let_go
 from .life import PACE
-from .orders import Orders
 from .preflight import EarlyOrders, NotReadyError, note_alone, record
 from .resuming import over_by
 from .run import run

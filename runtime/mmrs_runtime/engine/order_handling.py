@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..faults import ORDERED, STOPPED
+from ..orders.orders import ANSWER, BATTERY_CHANGED, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from ..policies import NOTHING
 from ..vehicle import Fault, LinkLost
 from .clocks import RunClock
 from .life import Life
-from .orders import ANSWER, BATTERY_CHANGED, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from .responses import HaltProgress
 from .situation import Stage
 

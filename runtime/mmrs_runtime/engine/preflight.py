@@ -9,9 +9,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from ..faults import LINK_LOST, ORDERED, PEER_LOST, STOPPED
+from ..orders.orders import ANSWER, BATTERY_CHANGED, ENDINGS, HOLD, RESUME, STOP, Order
 from ..policies import NOTHING
 from ..vehicle import Fault, Vehicle
-from .orders import ANSWER, BATTERY_CHANGED, ENDINGS, HOLD, RESUME, STOP, Order
 
 if TYPE_CHECKING:
     from .live import LiveRun

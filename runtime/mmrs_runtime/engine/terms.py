@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 
+from ..orders.orders import Orders
 from ..records.disk import Kept
 from ..records.steps import StepRecord
 from ..semantics import Outcome, Waiting
 from ..vehicle import Event, Fault, Progress
 from .clocks import RunClock
-from .orders import Orders
 from .status import StatusBoard
 
 Observer = Callable[[StepRecord], None]

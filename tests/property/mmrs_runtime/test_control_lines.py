@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mmrs_runtime.control import LONGEST_LINE, Control
-from mmrs_runtime.orders.orders import ORDERS, Inbox
+from mmrs_runtime.orders.orders import ORDERS, Orders
 
 ANYTHING = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(st.characters(), max_size=20),
@@ -31,10 +31,9 @@ PARTS = {
 def channel(tmp_path_factory):
     """Return a function that sends a line to robots that refuse everything, and returns what is answered."""
     folder = tmp_path_factory.mktemp("logs")
-    inboxes = {name: Inbox(name) for name in ("alpha", "beta")}
-    for inbox in inboxes.values():
-        inbox.close("its program has ended")
-    control = Control(folder, "run-0", inboxes, lambda robot: {"mode": "guided"})
+    orders = Orders()
+    orders.close("its program has ended")
+    control = Control(folder, "run-0", ("alpha", "beta"), orders, lambda robot: {"mode": "guided"})
     facts = json.loads((folder / "control.json").read_text("ascii"))
 
     def send(line: bytes) -> list[dict[str, object]]:

@@ -14,8 +14,8 @@ from live_runs import Idle
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, program, robot
-from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP, Order, Orders
 from mmrs_runtime.engine.terms import Attention, Terms
+from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP, Order, Orders
 from mmrs_runtime.records.steps import StepRecord
 
 ROBOTS = ("a", "b")

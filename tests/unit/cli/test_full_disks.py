@@ -14,7 +14,7 @@ from mmrs_core.behaviour.log import read_log
 from mmrs_core.cli import run
 from mmrs_core.languages.writing import replace_file
 from mmrs_runtime.control import Control
-from mmrs_runtime.orders.orders import Inbox
+from mmrs_runtime.orders.orders import Orders
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
 
@@ -102,7 +102,7 @@ def test_nothing_is_left_of_a_demonstration_whose_behaviour_cannot_be_written(tm
 def test_a_channel_that_cannot_be_announced_is_not_taken_for_one_that_will_be(tmp_path, limit):
     limit(10)
     with pytest.raises(OSError, match="large"):
-        Control(tmp_path, "run-0", {"alpha": Inbox("alpha")}, lambda robot: {})
+        Control(tmp_path, "run-0", ["alpha"], Orders(), lambda robot: {})
     limit(None)
     assert list(tmp_path.iterdir()) == []
 

@@ -19,26 +19,27 @@ from stalls import Stalls
 from mmrs_runtime.control import CONNECTIONS, Control, Taken
 from mmrs_runtime.orders.channels import CALL_SECONDS, Unreachable, asked_at_once, network
 from mmrs_runtime.orders.ordering import give, main
-from mmrs_runtime.orders.orders import Inbox, OrderKind
-from mmrs_runtime.questions import Questions
+from mmrs_runtime.orders.orders import Orders
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
 
-@pytest.fixture
-def inboxes():
-    asks = Questions(["answer:is it safe"])
-    return {"alpha": Inbox("alpha", questions=asks), "beta": Inbox("beta", questions=Questions())}
+ROBOTS = ("alpha", "beta")
 
 
 @pytest.fixture
-def opened(tmp_path):
+def orders():
+    return Orders()
+
+
+@pytest.fixture
+def opened(tmp_path, orders):
     """Return a function that opens a channel; all are closed when the test is over."""
     with ExitStack() as stack:
 
-        def open_channel(inboxes, folder=tmp_path, **options):
+        def open_channel(robots=ROBOTS, folder=tmp_path, **options):
             status = {"mode": "guided", "energy": 0.5}
-            control = Control(folder, "run-0", inboxes, lambda robot: status, **options)
+            control = Control(folder, "run-0", robots, orders, lambda robot: status, **options)
             stack.callback(control.close)
             return control
 
@@ -46,21 +47,21 @@ def opened(tmp_path):
 
 
 @pytest.fixture
-def robots():
-    """Return a function that has robots obey all they are told, in threads of their own."""
+def robots(orders):
+    """Return a function that has some robots obey all they are told, in a thread of their own."""
     over = threading.Event()
     threads = []
 
-    def obey(*inboxes, refuse=None):
-        def work(inbox):
+    def obey(*names, refuse=()):
+        def work():
             while not over.is_set():
-                if (receipt := inbox.take()) is not None:
-                    receipt.refuse(refuse) if refuse else receipt.confirm()
+                for order in orders.taken():
+                    for robot in set(order.robots) & set(names):
+                        order.refuse(robot, refuse[robot]) if robot in refuse else order.confirm(robot)
                 over.wait(0.005)
 
-        for inbox in inboxes:
-            threads.append(threading.Thread(target=work, args=(inbox,)))
-            threads[-1].start()
+        threads.append(threading.Thread(target=work))
+        threads[-1].start()
 
     yield obey
     over.set()
@@ -80,75 +81,61 @@ def ask(folder, **content):
         return json.loads(file.readline())
 
 
-def test_every_robot_confirms_an_order_to_all(tmp_path, opened, inboxes, robots):
-    opened(inboxes)
-    robots(*inboxes.values())
+def test_every_robot_confirms_an_order_to_all(tmp_path, opened, robots):
+    opened()
+    robots(*ROBOTS)
     replies = list(give(tmp_path, "hold"))
     assert {reply["robot"] for reply in replies} == {"alpha", "beta"}
     assert all(reply["confirmed"] and reply["seconds"] < 1.0 for reply in replies)
 
 
-def test_an_order_to_one_robot_is_not_heard_by_the_others(tmp_path, opened, inboxes, robots):
-    opened(inboxes)
-    robots(inboxes["beta"])
+def test_an_order_to_one_robot_is_not_heard_by_the_others(tmp_path, opened, robots):
+    opened()
+    robots("beta")
     (reply,) = give(tmp_path, "land", ["beta"])
     assert (reply["robot"], reply["confirmed"]) == ("beta", True)
-    assert inboxes["alpha"].take() is None
 
 
-def test_a_robot_that_does_not_answer_is_told_after_the_seconds_asked_for(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_a_robot_that_does_not_answer_is_told_after_the_seconds_asked_for(tmp_path, opened):
+    opened()
     (reply,) = give(tmp_path, "hold", ["alpha"], seconds=0.1)
     assert not reply["confirmed"]
     assert "no answer yet" in reply["why"]
 
 
-def test_a_robot_that_refuses_says_why(tmp_path, opened, inboxes, robots, capsys):
-    opened(inboxes)
-    robots(inboxes["alpha"], refuse="is in the workshop")
+def test_a_robot_that_refuses_says_why(tmp_path, opened, robots, capsys):
+    opened()
+    robots("alpha", refuse={"alpha": "is in the workshop"})
     assert main(["hold", "alpha", "--log", str(tmp_path)]) == 1
     assert capsys.readouterr().out == "'alpha': hold not confirmed (is in the workshop)\n"
 
 
-def test_a_robot_that_has_ended_refuses_what_it_was_told_and_what_comes(tmp_path, opened, inboxes):
-    opened(inboxes)
-    receipt = inboxes["alpha"].give(OrderKind("hold"))
-    inboxes["alpha"].close("its program has ended")
+def test_a_robot_that_has_ended_refuses_what_it_was_told_and_what_comes(tmp_path, opened, orders):
+    opened()
+    order = orders.give("hold", ["alpha"])
+    orders.close("its program has ended")
     (reply,) = give(tmp_path, "hold", ["alpha"])
-    assert (receipt.confirmed, receipt.why) == (False, "its program has ended")
+    assert order.refused == {"alpha": "its program has ended"}
     assert reply["why"] == "its program has ended"
 
 
-def test_an_answer_is_known_to_the_robot_at_once(tmp_path, opened, inboxes):
-    opened(inboxes)
-    list(give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True))
-    assert inboxes["alpha"].questions.answers() == {"is it safe": True}
+def test_an_answer_is_given_with_its_question(tmp_path, opened, orders):
+    opened()
+    list(give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True, seconds=0.1))
+    (order,) = orders.taken()
+    assert (order.kind, order.robots) == ("answer", ("alpha",))
+    assert (order.question, order.answer) == ("is it safe", True)
 
 
-def test_an_answer_to_a_question_that_nobody_asks_is_refused(tmp_path, opened, inboxes, capsys):
-    opened(inboxes)
-    assert main(["answer", "--question", "is it save", "--says", "yes", "--log", str(tmp_path)]) == 1
-    assert capsys.readouterr().out.splitlines() == [
-        "'alpha': answer not confirmed (no choice asks 'is it save'; there is 'is it safe')",
-        "'beta': answer not confirmed (no choice asks 'is it save'; none asks anything)",
-    ]
-
-
-def test_an_answer_to_everybody_is_for_those_who_ask(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_an_answer_to_everybody_is_for_those_who_take_it(tmp_path, opened, robots):
+    opened()
+    robots(*ROBOTS, refuse={"beta": "no choice asks 'is it safe'; none asks anything"})
     (reply,) = give(tmp_path, "answer", question="is it safe", answer=True)
     assert (reply["robot"], reply["confirmed"]) == ("alpha", True)
 
 
-def test_a_robot_that_has_ended_takes_no_answer(tmp_path, opened, inboxes):
-    opened(inboxes)
-    inboxes["alpha"].close("its program has ended")
-    (reply,) = give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True)
-    assert (reply["confirmed"], reply["why"]) == (False, "its program has ended")
-
-
-def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):
-    opened(inboxes)
+def test_status_tells_of_each_robot(tmp_path, opened, capsys):
+    opened()
     assert main(["status", "--log", str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines()[0] == "'alpha'  guided  battery 50%"
 
@@ -157,21 +144,21 @@ def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):
     ("encoding", "shown"), [("utf-8", "'Ärger'  guided"), ("ascii", "'\\xc4rger'  guided")]
 )
 def test_names_are_shown_as_they_are_written_where_the_terminal_can(tmp_path, opened, encoding, shown):
-    opened({"Ärger": Inbox("Ärger", questions=Questions())})
+    opened(["Ärger"])
     order = [sys.executable, "-m", "mmrs_runtime.control", "status", "--log", str(tmp_path)]
     environment = {**os.environ, "PYTHONIOENCODING": encoding}
     done = subprocess.run(order, capture_output=True, env=environment, check=True, timeout=60)
     assert done.stdout.decode(encoding).startswith(shown)
 
 
-def test_who_does_not_know_the_token_is_not_obeyed(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_who_does_not_know_the_token_is_not_obeyed(tmp_path, opened, orders):
+    opened()
     assert ask(tmp_path, token="guessed", order="land") == {"error": "token: is not that of this process"}
-    assert inboxes["alpha"].take() is None
+    assert orders.taken() == ()
 
 
-def test_only_its_user_may_read_the_token(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_only_its_user_may_read_the_token(tmp_path, opened):
+    opened()
     assert stat.S_IMODE((tmp_path / "control.json").stat().st_mode) == 0o600
 
 
@@ -185,8 +172,8 @@ def test_only_its_user_may_read_the_token(tmp_path, opened, inboxes):
         ({"order": "answer", "question": "is it safe"}, "answer: needs a question"),
     ],
 )
-def test_an_order_that_makes_no_sense_is_refused_in_words(tmp_path, opened, inboxes, content, complaint):
-    opened(inboxes)
+def test_an_order_that_makes_no_sense_is_refused_in_words(tmp_path, opened, content, complaint):
+    opened()
     assert complaint in ask(tmp_path, **content)["error"]
 
 
@@ -202,17 +189,17 @@ def connected(tmp_path):
         yield connect
 
 
-def test_clients_that_say_nothing_keep_no_order_from_the_robots(tmp_path, opened, inboxes, robots, connected):
-    opened(inboxes, greeting_seconds=60.0)
-    robots(*inboxes.values())
+def test_clients_that_say_nothing_keep_no_order_from_the_robots(tmp_path, opened, robots, connected):
+    opened(greeting_seconds=60.0)
+    robots(*ROBOTS)
     for _ in range(3 * CONNECTIONS):
         connected()
     assert [reply["confirmed"] for reply in give(tmp_path, "land")] == [True, True]
 
 
 @pytest.mark.parametrize("begun", [b"", b'{"token": '])
-def test_a_client_that_gives_no_whole_order_in_time_is_hung_up_on(opened, inboxes, connected, begun):
-    opened(inboxes, greeting_seconds=0.1)
+def test_a_client_that_gives_no_whole_order_in_time_is_hung_up_on(opened, connected, begun):
+    opened(greeting_seconds=0.1)
     client = connected()
     client.sendall(begun)
     with client.makefile("rb") as file:
@@ -220,16 +207,16 @@ def test_a_client_that_gives_no_whole_order_in_time_is_hung_up_on(opened, inboxe
         assert file.read() == b""
 
 
-def test_a_client_that_gives_an_order_that_is_too_long_is_told_so(opened, inboxes, connected):
-    opened(inboxes)
+def test_a_client_that_gives_an_order_that_is_too_long_is_told_so(opened, connected):
+    opened()
     with connected().makefile("rwb") as file:
         file.write(b" " * 300_000 + b"\n")
         file.flush()
         assert json.loads(file.readline()) == {"error": "an order is one line of less than 65536 bytes"}
 
 
-def test_an_order_that_has_a_name_twice_is_refused(tmp_path, opened, inboxes, connected):
-    opened(inboxes)
+def test_an_order_that_has_a_name_twice_is_refused(tmp_path, opened, connected):
+    opened()
     token = json.loads((tmp_path / "control.json").read_text("ascii"))["token"]
     with connected().makefile("rwb") as file:
         file.write(f'{{"token": "{token}", "order": "hold", "order": "land"}}\n'.encode())
@@ -237,8 +224,8 @@ def test_an_order_that_has_a_name_twice_is_refused(tmp_path, opened, inboxes, co
         assert json.loads(file.readline()) == {"error": "'order' is there more than once"}
 
 
-def test_a_client_may_give_one_order_after_the_other(tmp_path, opened, inboxes, connected):
-    opened(inboxes)
+def test_a_client_may_give_one_order_after_the_other(tmp_path, opened, connected):
+    opened()
     token = json.loads((tmp_path / "control.json").read_text("ascii"))["token"]
     with connected().makefile("rwb") as file:
         for order in ("explode", "status"):
@@ -258,16 +245,16 @@ def test_a_client_may_give_one_order_after_the_other(tmp_path, opened, inboxes, 
         "[1]",
     ],
 )
-def test_an_announcement_of_any_shape_keeps_no_process_from_its_start(tmp_path, opened, inboxes, facts):
+def test_an_announcement_of_any_shape_keeps_no_process_from_its_start(tmp_path, opened, facts):
     (tmp_path / "control-1.json").write_text(facts, "ascii")
-    opened(inboxes)
+    opened()
     assert len(list(give(tmp_path, "status"))) == 2
 
 
-def test_processes_that_share_a_folder_are_all_heard(tmp_path, opened, inboxes, robots):
-    opened({"alpha": inboxes["alpha"]})
-    opened({"beta": inboxes["beta"]})
-    robots(*inboxes.values())
+def test_processes_that_share_a_folder_are_all_heard(tmp_path, opened, robots):
+    opened(["alpha"])
+    opened(["beta"])
+    robots(*ROBOTS)
     assert {reply["robot"] for reply in give(tmp_path, "hold")} == {"alpha", "beta"}
 
 
@@ -278,37 +265,37 @@ def left_by_a_killed_process(folder, robots, name="control-1.json", **where):
     (folder / name).write_text(json.dumps(facts), "ascii")
 
 
-def test_the_announcement_of_a_process_that_was_killed_is_replaced(tmp_path, opened, inboxes, robots):
+def test_the_announcement_of_a_process_that_was_killed_is_replaced(tmp_path, opened, robots):
     left_by_a_killed_process(tmp_path, ["alpha"], "control.json")
-    opened(inboxes)
-    robots(*inboxes.values())
+    opened()
+    robots(*ROBOTS)
     assert len(list(give(tmp_path, "hold"))) == 2
 
 
-def test_a_port_that_somebody_else_has_by_now_is_no_process_that_runs(tmp_path, opened, inboxes):
+def test_a_port_that_somebody_else_has_by_now_is_no_process_that_runs(tmp_path, opened):
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
     with socket.create_server(("127.0.0.1", 0)) as stranger:
         port = stranger.getsockname()[1]
         facts = {"port": port, "token": "old", "pid": gone.pid, "robots": ["alpha"]}
         (tmp_path / "control.json").write_text(json.dumps(facts), "ascii")
-        opened(inboxes)
+        opened()
     assert json.loads((tmp_path / "control.json").read_text("ascii"))["pid"] == os.getpid()
 
 
-def test_a_process_that_answers_runs_in_another_container_maybe(tmp_path, opened, inboxes):
-    opened({"alpha": inboxes["alpha"]})
+def test_a_process_that_answers_runs_in_another_container_maybe(tmp_path, opened):
+    opened(["alpha"])
     path = tmp_path / "control.json"
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
     path.write_text(json.dumps(json.loads(path.read_text("ascii")) | {"pid": gone.pid}), "ascii")
     with pytest.raises(Taken):
-        opened({"alpha": inboxes["alpha"]})
+        opened(["alpha"])
 
 
-def test_a_killed_process_keeps_no_order_from_the_robots_of_others(tmp_path, opened, inboxes, robots, capsys):
-    opened(inboxes)
-    robots(*inboxes.values())
+def test_a_killed_process_keeps_no_order_from_the_robots_of_others(tmp_path, opened, robots, capsys):
+    opened()
+    robots(*ROBOTS)
     left_by_a_killed_process(tmp_path, ["gamma"])
     replies = {reply["robot"]: reply for reply in give(tmp_path, "stop")}
     assert (replies["alpha"]["confirmed"], replies["beta"]["confirmed"]) == (True, True)
@@ -317,9 +304,9 @@ def test_a_killed_process_keeps_no_order_from_the_robots_of_others(tmp_path, ope
     assert "'gamma'  its process no longer runs" in capsys.readouterr().out
 
 
-def test_a_process_that_hangs_keeps_no_order_from_the_robots_of_others(tmp_path, opened, inboxes, robots):
-    opened(inboxes)
-    robots(*inboxes.values())
+def test_a_process_that_hangs_keeps_no_order_from_the_robots_of_others(tmp_path, opened, robots):
+    opened()
+    robots(*ROBOTS)
     with socket.create_server(("127.0.0.1", 0)) as frozen:
         facts = {"port": frozen.getsockname()[1], "token": "", "robots": ["gamma"]}
         (tmp_path / "control-1.json").write_text(json.dumps(facts), "ascii")
@@ -337,11 +324,9 @@ def test_whoever_gives_an_order_need_not_wait_for_the_answer_of_a_process_that_h
     assert time.monotonic() - begun < 3.0 + stalls.seconds
 
 
-def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_once(
-    tmp_path, opened, inboxes, robots
-):
-    opened(inboxes)
-    robots(*inboxes.values())
+def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_once(tmp_path, opened, robots):
+    opened()
+    robots(*ROBOTS)
     left_by_a_killed_process(tmp_path, ["alpha"])
     assert [reply["confirmed"] for reply in give(tmp_path, "hold", ["alpha"])] == [True]
 
@@ -355,8 +340,8 @@ def test_of_a_process_on_another_machine_nobody_says_that_it_has_ended(tmp_path)
         list(give(tmp_path, "hold"))
 
 
-def test_a_channel_says_where_it_is(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_a_channel_says_where_it_is(tmp_path, opened):
+    opened()
     facts = json.loads((tmp_path / "control.json").read_text())
     assert (facts["machine"], facts["network"]) == (socket.gethostname(), network())
 
@@ -369,35 +354,35 @@ def test_where_all_processes_were_killed_nobody_can_be_reached(tmp_path):
         list(give(tmp_path, "hold"))
 
 
-def test_whoever_is_started_takes_away_what_killed_processes_have_left(tmp_path, opened, inboxes):
+def test_whoever_is_started_takes_away_what_killed_processes_have_left(tmp_path, opened):
     left_by_a_killed_process(tmp_path, ["alpha"])
     left_by_a_killed_process(tmp_path, ["gamma"], "control.json")
-    opened(inboxes)
+    opened()
     assert [path.name for path in tmp_path.iterdir()] == ["control.json"]
 
 
-def test_an_announcement_that_is_being_written_is_left_alone(tmp_path, opened, inboxes):
+def test_an_announcement_that_is_being_written_is_left_alone(tmp_path, opened):
     (tmp_path / "control.json").touch()
-    opened(inboxes)
+    opened()
     assert len(list(tmp_path.iterdir())) == 2
     assert len(list(give(tmp_path, "status"))) == 2
 
 
-def test_a_robot_is_run_by_one_process_at_a_time(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_a_robot_is_run_by_one_process_at_a_time(tmp_path, opened):
+    opened()
     with pytest.raises(Taken, match=rf"'alpha' is run by process {os.getpid()} already \(control.json\)"):
-        Control(tmp_path, "run-0", {"alpha": Inbox("alpha"), "gamma": Inbox("gamma")}, lambda robot: {})
+        Control(tmp_path, "run-0", ["alpha", "gamma"], Orders(), lambda robot: {})
     assert [path.name for path in tmp_path.glob("control*.json")] == ["control.json"]
 
 
-def test_nothing_is_left_of_a_channel_that_was_closed(tmp_path, inboxes):
-    Control(tmp_path, "run-0", inboxes, lambda robot: {}).close()
+def test_nothing_is_left_of_a_channel_that_was_closed(tmp_path):
+    Control(tmp_path, "run-0", ROBOTS, Orders(), lambda robot: {}).close()
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(Unreachable, match="no running robots"):
         list(give(tmp_path, "hold"))
 
 
-def test_a_robot_that_nobody_runs_is_not_found(tmp_path, opened, inboxes):
-    opened(inboxes)
+def test_a_robot_that_nobody_runs_is_not_found(tmp_path, opened):
+    opened()
     with pytest.raises(Unreachable, match="'gamma': not running; there are 'alpha', 'beta'"):
         list(give(tmp_path, "hold", ["gamma"]))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import signal
 import threading
+from collections import deque
 
 import pytest
 
-from mmrs_runtime.engine.order_sources import stopping
-from mmrs_runtime.engine.orders import Orders
+from mmrs_runtime.orders.orders import Orders, stopping
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -40,3 +40,19 @@ def test_outside_the_main_thread_signals_are_left_alone():
     thread.start()
     thread.join()
     assert errors == []
+
+
+def test_an_order_that_is_given_while_the_run_ends_is_refused():
+    orders = Orders()
+    closing = threading.Thread(target=orders.close, args=("the run has ended",))
+
+    class Meanwhile(deque):
+        """Lets the run end right before an order is put in."""
+
+        def append(self, order):
+            closing.start()
+            closing.join()
+            super().append(order)
+
+    orders._waiting = Meanwhile()
+    assert orders.give("hold", ["a"]).refused == {"a": "the run has ended"}

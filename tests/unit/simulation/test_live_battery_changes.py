@@ -9,7 +9,7 @@ from live_runs import WALK, Script, do
 
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import program, robot
-from mmrs_runtime.engine.orders import BATTERY_CHANGED, RESUME, STOP
+from mmrs_runtime.orders.orders import BATTERY_CHANGED, RESUME, STOP
 from mmrs_runtime.vehicle import Vehicle
 
 pytestmark = pytest.mark.real_time("parts of flights")

@@ -11,7 +11,7 @@ from live_runs import Script, do
 
 from mmrs_core.testing.small_programs import program, robot
 from mmrs_runtime.engine import decisions as judging
-from mmrs_runtime.engine.orders import HOLD, RETURN
+from mmrs_runtime.orders.orders import HOLD, RETURN
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.vehicle import Condition
 

@@ -14,7 +14,7 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.engine import life
-from mmrs_runtime.engine.orders import RETURN, STOP
+from mmrs_runtime.orders.orders import RETURN, STOP
 from mmrs_runtime.records.log import LogWriter, read
 from mmrs_runtime.semantics import Outcome
 

@@ -19,7 +19,7 @@ from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.bus import CommandId, Node, NoJournal
 from mmrs_runtime.bus.program_bus import ProgramBus, members_of
 from mmrs_runtime.engine.connecting import let_go
-from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("parts of flights")

@@ -12,7 +12,7 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import notify, program, robot
-from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("parts of flights")

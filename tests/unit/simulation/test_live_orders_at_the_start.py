@@ -14,7 +14,7 @@ from mmrs_core.contributions.execution import Fault
 from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.errors import LinkLostError
 from mmrs_core.testing.small_programs import program, robot
-from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("parts of flights")

@@ -12,8 +12,8 @@ from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import notify, program, robot
-from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.engine.resuming import restore
+from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots
 

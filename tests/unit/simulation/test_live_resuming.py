@@ -15,8 +15,8 @@ from mmrs_core.scene import Policy
 from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, notify, program, robot, robot_type
-from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.engine.resuming import restore
+from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots
 
