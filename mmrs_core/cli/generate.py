@@ -115,7 +115,7 @@ class _Order:
 
 @dataclass(frozen=True, slots=True)
 class _Made:
-    """What was generated: files that were written, what is left to write, and notes on files."""
+    """What was generated: files that were written, what is left to do, and notes on files."""
 
     written: tuple[Path, ...]
     manifest: Manifest
@@ -136,7 +136,7 @@ def _tell_written(made: _Made, folder: Path) -> None:
     for sort, names in (
         ("with a file of yours in place of the target's own", sorted(manifest.overrides)),
         ("left out, since the target cannot express it", manifest.losses),
-        ("left for you to write before it works", made.asks),
+        ("left for you to do before it works", made.asks),
     ):
         if names:
             say(f"{sort}:")

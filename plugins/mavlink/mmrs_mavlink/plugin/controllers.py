@@ -164,16 +164,9 @@ class MavlinkPython(PythonDriver[VehicleContext]):
                 "charge",
                 Call("Charge", (), tuple((each.name, getattr(charge, each.name)) for each in fields(charge))),
             )
-        margins = travel_margins_of(robot, input.program.position_error)
-        names = ("acceptance", "radius", "margin")
-        how = [(name, getattr(margins, name)) for name in names]
-        kinematics = kinematics_of(robot, input)
-        turning_radius = 0.0 if kinematics is None else kinematics.turning_radius
-        if turning_radius > 0.0:
-            how.append(("turning_radius", turning_radius))
-        how += _largest_rates(context)
-        yield "travel", Call("Travel", (robot.travel_mode,), tuple(how))
-        yield "runs", tuple(_run(run, robot) for run in runs_of(context, turning_radius))
+        how = travel_of(context, input)
+        yield "travel", Call("Travel", (robot.travel_mode,), tuple(how.items()))
+        yield "runs", tuple(_run(run, robot) for run in runs_of(context, how.get("turning_radius", 0.0)))
         yield (
             "fence",
             tuple(tuple(_ground(each, context) for each in fence.ring) for fence in kept.fences),
@@ -258,6 +251,16 @@ def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
     if capability.lifetime is not None:
         yield "endurance", capability.lifetime
     yield "fastest", metres(capability.speed[1])
+
+
+def travel_of(context: VehicleContext, input: TargetInput) -> dict[str, float]:
+    """Return how a robot travels, by the names of `Travel`."""
+    margins = travel_margins_of(context.robot, input.program.position_error)
+    how = {name: getattr(margins, name) for name in ("acceptance", "radius", "margin")}
+    kinematics = kinematics_of(context.robot, input)
+    if kinematics is not None and kinematics.turning_radius > 0.0:
+        how["turning_radius"] = kinematics.turning_radius
+    return {**how, **dict(_largest_rates(context))}
 
 
 def _largest_rates(context: VehicleContext) -> Iterator[tuple[str, float]]:

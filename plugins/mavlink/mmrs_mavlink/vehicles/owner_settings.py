@@ -26,6 +26,7 @@ from math import hypot, inf
 from mmrs_runtime.controllers.geodesy import distance, offset
 from mmrs_runtime.faults import RefusedError
 
+from ..limits import limits_of
 from ..links.link import Link
 from ..links.ourselves import GROUND_SYSTEM
 from ..profiles.autopilot import OwnFence
@@ -205,35 +206,16 @@ def set_up(link: Link, travel: Travel, acceptance: float = inf, speed: float = 0
         acceptance: metres from a place at which it counts as reached.
         speed: metres per second, the largest that its program commands.
     """
-    profile, mode = link.profile, f"it travels {travel.mode}"
-    radius = min(travel.radius, acceptance) if profile.stops_early else travel.radius
-    most = {name: (radius * unit, mode) for name, unit in profile.radii.items()}
-    for units, rate, how in (
-        (profile.climbs, travel.climb, "climbs at {:g} m/s"),
-        (profile.descents, travel.descent, "descends at {:g} m/s"),
-        (profile.yaw_rates, travel.turn_rate, "turns at {:g}°/s"),
-    ):
-        if rate is not None:
-            why = f"it {how.format(rate)}, as its type states"
-            most |= {name: (rate * unit, why) for name, unit in units.items()}
-    least = {name: (travel.margin, mode) for name in profile.autopilot.margins}
-    found = parameters.read(link, [*most, *least, *profile.fastest, *profile.pivots])
+    profile = link.profile
+    limits = tuple(limits_of(profile, travel, acceptance))
+    found = parameters.read(link, [*(each.name for each in limits), *profile.fastest])
     expected = min(speed, profile.pacing.step.speed)
-    for name, value in found.items():
-        if name in profile.fastest:
-            if value < expected * profile.fastest[name]:
-                yield f"{name} = {value:g}: slower than the {speed:g} m/s of its program ({LATE})"
-            continue
-        if name in profile.pivots:
-            if not value:
-                wanted = profile.pivots[name]
-                yield _changed(
-                    link, name, value, wanted, f"it turns on the spot where it turns by over {wanted:g}°"
-                )
-            continue
-        wanted, why = most.get(name) or least[name]
-        if value > wanted if name in most else value < wanted:
-            yield _changed(link, name, value, wanted, why)
+    for name, units in profile.fastest.items():
+        if (value := found.get(name)) is not None and value < expected * units:
+            yield f"{name} = {value:g}: slower than the {speed:g} m/s of its program ({LATE})"
+    for limit in limits:
+        if (value := found.get(limit.name)) is not None and not limit.holds(value):
+            yield _changed(link, limit.name, value, limit.value, limit.why)
 
 
 def _changed(link: Link, name: str, was: float, wanted: float, why: str) -> str:

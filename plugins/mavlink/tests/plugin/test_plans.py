@@ -363,6 +363,17 @@ def test_a_mission_takes_longer_than_its_moves_one_by_one():
     assert sortie_seconds(robot, given) >= (sum(each.expected for each in stepped),)
 
 
+def test_what_no_mission_sets_on_its_vehicle_is_asked_for():
+    _, given = flight(go_to("far", (0.0, 400.0, 25.0)))
+    (type,) = given.types.values()
+    slow = replace(
+        type, capabilities=tuple(replace(c, climb_rate=1.5, turn_rate=30.0) for c in type.capabilities)
+    )
+    (file,) = QGC_PLAN.files(replace(given, types={type.name: slow}))
+    assert "set WPNAV_SPEED_UP to 150 at most: it climbs at 1.5 m/s, as its type states" in file.asks
+    assert "set ATC_SLEW_YAW to 3000 at most: it turns at 30°/s, as its type states" in file.asks
+
+
 def test_a_file_is_noted_with_the_seconds_of_its_mission():
     robot, given = flight(go_to("far", (0.0, 400.0, 25.0)))
     (seconds,) = sortie_seconds(robot, given)

@@ -26,7 +26,14 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     """
     for mission in missions_of(input):
         trace = tuple(row.step for row in mission.rows)
-        yield FileSpec(f"{mission.stem}.plan", "plan.jinja", view_of(mission), trace=trace, note=mission.note)
+        yield FileSpec(
+            f"{mission.stem}.plan",
+            "plan.jinja",
+            view_of(mission),
+            trace=trace,
+            asks=mission.asks,
+            note=mission.note,
+        )
 
 
 def view_of(mission: PlannedMission) -> dict[str, object]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
@@ -13,12 +13,15 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.scene import Point
+from mmrs_mavlink.limits import Limit, limits_of
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
+from mmrs_mavlink.plugin.controllers import travel_of
 from mmrs_mavlink.plugin.escapes import escapes_of
 from mmrs_mavlink.plugin.fencing import fences_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
 from mmrs_mavlink.plugin.plans.items import PlanItem, Row, rows_of
 from mmrs_mavlink.plugin.plans.times import sortie_seconds
+from mmrs_mavlink.program import Travel
 
 Vertex: TypeAlias = tuple[float, float]
 """Latitude and longitude in degrees."""
@@ -39,6 +42,7 @@ class PlannedMission:
         rally: heights are above home: the greatest of the sortie, which is above the obstacles along its
             path.
         seconds: expected, waits aside; None where that is unknown.
+        limits: what the vehicle must be set to before its first sortie, which no mission does.
     """
 
     context: VehicleContext
@@ -48,6 +52,12 @@ class PlannedMission:
     fence: tuple[tuple[Vertex, ...], ...]
     rally: tuple[Spot, ...]
     seconds: float | None
+    limits: tuple[Limit, ...] = ()
+
+    @property
+    def asks(self) -> tuple[str, ...]:
+        """Return what to set on the vehicle before it begins, in words."""
+        return tuple(f"set {each.name} to {each.value:g} {each.sort}: {each.why}" for each in self.limits)
 
     @property
     def note(self) -> str:
@@ -68,7 +78,8 @@ def missions_of(input: TargetInput) -> Iterator[PlannedMission]:
         for number, sortie in enumerate(sorties, start=1):
             suffix = f".sortie-{number}" if number > 1 else ""
             lasts = seconds[number - 1] if len(seconds) == len(sorties) else None
-            yield _mission(context, input, stems[robot.id] + suffix, sortie, lasts)
+            mission = _mission(context, input, stems[robot.id] + suffix, sortie, lasts)
+            yield mission if number > 1 else replace(mission, limits=tuple(_limits(context, input)))
 
 
 def _mission(
@@ -92,6 +103,14 @@ def _mission(
         _rally(context, points, sortie),
         seconds,
     )
+
+
+def _limits(context: VehicleContext, input: TargetInput) -> Iterator[Limit]:
+    """Yield what a vehicle must be set to; the radius of a place may stand in its item."""
+    profile, how = context.profile, travel_of(context, input)
+    for limit in limits_of(profile, Travel(context.robot.travel_mode, **how), how["acceptance"]):
+        if limit.value > 0.0 and not (profile.autopilot.missions.zero_counts and limit.name in profile.radii):
+            yield limit
 
 
 def _home(robot: RobotProgram, context: VehicleContext) -> Spot:

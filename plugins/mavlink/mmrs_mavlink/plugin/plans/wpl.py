@@ -41,7 +41,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         UnsupportedError: the behaviour is local, or a robot has no home.
     """
     for mission in missions_of(input):
-        yield replace(_list(mission, "", (_home(mission), *mission.rows)), note=mission.note)
+        list = _list(mission, "", (_home(mission), *mission.rows))
+        yield replace(list, asks=mission.asks, note=mission.note)
         for name, rows in (("fence", _fence(mission)), ("rally", _rally(mission))):
             if rows:
                 yield _list(mission, f".{name}", rows)
