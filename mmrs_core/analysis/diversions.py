@@ -140,7 +140,7 @@ class _Diversions:
         over = corners[-1]
         drop = over[2] - self._ground(over)
         if self._kinematics.launches:
-            down = self._kinematics.landing(drop) * (1.0 + self._kinematics.timing.spread)
+            down = self._kinematics.upright_bounds(self._kinematics.landing(drop)).longest
         else:
             down = self._rates.from_stop_to_stop(over, (over[0], over[1], over[2] - drop)) if drop else 0.0
             down += self._kinematics.setting_out().longest + self._kinematics.timing.reporting

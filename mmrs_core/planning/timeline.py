@@ -34,7 +34,7 @@ from mmrs_core.scene import (
     Transit,
 )
 from mmrs_core.scene.robots import BACK_SECONDS
-from mmrs_core.scene.timing import Rates, acting, bounded, noticing
+from mmrs_core.scene.timing import Rates, acting, noticing
 
 _Given: TypeAlias = tuple[float, float, Mapping[str, int]]
 """Seconds at which a signal is given at the earliest, and at the latest, and what is then known."""
@@ -188,7 +188,7 @@ class _Walk:
         column = self.here, (step.at[0], step.at[1], step.up)
         over_home = all(dist(point[:2], self.robot.home[:2]) <= NEAR for point in column)
         relation = HomeRelation.COLUMN if over_home else HomeRelation.ELSEWHERE
-        seconds = bounded(step.end - step.begin, self.kinematics.timing)
+        seconds = self.kinematics.upright_bounds(step.end - step.begin)
         self._ride(column, seconds.shortest, seconds.longest, self.kinematics.rates(), relation=relation)
 
     def _await(self, step: Await, given: Mapping[str, _Given]) -> None:

@@ -16,7 +16,7 @@ from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import Reach, Reaches
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.scene import Area, AreaUse, Corridor, Kinematics, Point, Position, Robot, Scene
-from mmrs_core.scene.timing import MoveSeconds, Rates, bounded
+from mmrs_core.scene.timing import MoveSeconds, Rates
 
 _SPECK = 0.01
 """Metres: half the side of the square that stands for a home."""
@@ -339,7 +339,7 @@ class Travel:
 
     def _upright(self, seconds: float, route: Route | None = None) -> MoveSeconds:
         """Return how long launching or landing takes, and a route before or after that."""
-        upright = bounded(seconds, self.kinematics.timing)
+        upright = self.kinematics.upright_bounds(seconds)
         if route is None:
             return upright
         shortest, expected, longest = (a + b for a, b in zip(route.bounds, upright, strict=True))

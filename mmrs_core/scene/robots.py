@@ -321,6 +321,10 @@ class Kinematics:
         later = slow / self.landing_rate if self.landing_rate < inf else 0.0
         return self._upright().rise(slow - height) + later + self.recovery
 
+    def upright_bounds(self, seconds: float) -> MoveSeconds:
+        """Return how long a launch or a landing takes, by the seconds that are expected of it."""
+        return bounded(seconds, self.upright or self.timing)
+
     def _upright(self) -> Rates:
         """Return how fast it launches and lands."""
         return (self if self.upright is None else self.flown_by(self.upright)).rates()

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf, log
+from math import exp, inf, log, sqrt
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
@@ -44,7 +44,8 @@ class LegTiming:
         trailing: seconds by which it trails a set-point that moves along the leg at the commanded speed; what
             is left as that stops becomes less by e in each. 0: it follows none.
         swinging: seconds in which it comes to thrust against its drag then, and so goes beyond its target.
-        waiting: seconds within the acceptance after which it counts as settled then, however it moves.
+        waiting: seconds within the acceptance, in all, after which it counts as settled then, however it
+            moves.
         spread: by which share legs take longer or shorter than expected.
         reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
@@ -111,14 +112,15 @@ class LegTiming:
     def _come_to_rest(self, fastest: float, seconds: float) -> float:
         """Return the seconds from the stop of a set-point until a robot that trails it is settled there.
 
-        It comes near, goes beyond, and back; unless that is far, it need not be still once it has waited.
+        It comes near, goes beyond, and back; it need not be still once it has been near for long enough. While
+        it turns back, its speed changes by what it comes back at in the seconds by which it trails.
         """
         behind = self.trailing * fastest * (1.0 - exp(-seconds / self.trailing))
         beyond = self.overshoot * fastest * (1.0 - exp(-seconds / self.swinging))
         still = self.settling + self.trailing * log(max(1.0, behind / RESTING)) + beyond / self.returning
-        if beyond > self.acceptance:
-            return still
-        return min(still, self.waiting + self.trailing * log(max(1.0, behind / self.acceptance)))
+        near = self.trailing * log(max(1.0, behind / self.acceptance))
+        away = 2.0 * sqrt(2.0 * max(0.0, beyond - self.acceptance) * self.trailing / self.returning)
+        return min(still, near + away + self.waiting)
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.

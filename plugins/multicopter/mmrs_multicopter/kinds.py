@@ -8,7 +8,6 @@ from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.scene.timing import bounded
 from mmrs_core.transformation.kinds import ROBOT, kinematics_for, path_seconds
 from mmrs_multicopter import trajectories
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
@@ -75,12 +74,12 @@ def take_off_seconds(
     move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
 ) -> MoveSeconds:
     """Return the duration of spinning up and climbing."""
-    return bounded(kinematics.launching(path[-1][2] - path[0][2]), kinematics.timing)
+    return kinematics.upright_bounds(kinematics.launching(path[-1][2] - path[0][2]))
 
 
 def land_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
     """Return the duration of descending, slowly near the ground, and stopping the motors."""
-    return bounded(kinematics.landing(path[0][2] - path[-1][2]), kinematics.timing)
+    return kinematics.upright_bounds(kinematics.landing(path[0][2] - path[-1][2]))
 
 
 MULTICOPTER_KIND = RobotKind(

@@ -19,7 +19,7 @@ controller answers an error of its speed by one of its place (MPC_XY_P): 0.5 to 
 from __future__ import annotations
 
 import threading
-from math import copysign, inf, nan, pi, radians, remainder
+from math import copysign, inf, isnan, nan, pi, radians, remainder
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -41,7 +41,9 @@ AHEAD_SECONDS = 1.5
 """For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
 
 WANDER, WANDERING = 1.5, 4.0
-"""Metres from the target, and seconds within these, from which it has settled whatever speed it estimates."""
+"""Metres from the target, and seconds within these, in all, from which it has settled whatever speed it
+estimates. It may be a bit farther away in between: were it to stay, a leg would take 4 s longer whose
+overshoot is 0.02 m more."""
 
 FRESH_SECONDS = 1.0
 """In which a position comes from a vehicle that tells five a second."""
@@ -131,7 +133,7 @@ class Px4Guidance:
         self._link = link
         self._telemetry = telemetry
         self._stream = Stream(link, telemetry)
-        self._near_since: float | None = None
+        self._near_for, self._near_at = 0.0, nan
         self._aimed_at: Place | None = None
 
     def begin_guiding(self) -> None:
@@ -149,16 +151,17 @@ class Px4Guidance:
         turns_at = min(turn_rate, radians(self._link.profile.pacing.turn_rate))
         self._stream.aim(place, yaw, speed, turns_at)
         if place != self._aimed_at:
-            self._aimed_at, self._near_since = place, None
+            self._aimed_at, self._near_for, self._near_at = place, 0.0, nan
 
     def has_settled(self, place: Place) -> bool:
-        """Return whether it has been near to a place for some time, to which its set-point has come."""
-        now = self._telemetry.time()
+        """Return whether it is near to a place, and has been for some time since its set-point came there."""
+        now, before = self._telemetry.time(), self._near_at
         if not self._stream.is_there or distance(self._telemetry.here(), place) > WANDER:
-            self._near_since = None
-        elif self._near_since is None:
-            self._near_since = now
-        return self._near_since is not None and now - self._near_since >= WANDERING
+            self._near_at = nan
+            return False
+        self._near_for += 0.0 if isnan(before) else now - before
+        self._near_at = now
+        return self._near_for >= WANDERING
 
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF, straight up from here.

@@ -159,6 +159,20 @@ def test_a_vehicle_settles_near_its_target_although_it_estimates_that_it_moves(p
     assert found == [False, False, settled, False]
 
 
+def test_a_vehicle_settles_that_goes_a_bit_beyond_its_surroundings_in_between(px4):
+    mode_control, telemetry, autopilot = px4
+    guidance, place = mode_control.guidance, Geographic(42.37, 13.35, 20.0)
+    mode_control.enter(modes.GUIDED)
+    guidance.aim(place, 0.0, None)
+    eventually(lambda: autopilot.points[-1].lat_int == 423_700_000)
+    found = []
+    for seconds, north in ((1.0, 1.4), (3.0, 1.4), (3.5, 1.6), (5.0, 1.4), (6.5, 1.4), (7.5, 1.4)):
+        autopilot.wire.say(here(north=north, seconds=seconds))
+        eventually(lambda: telemetry.time() == seconds)  # noqa: B023
+        found.append(guidance.has_settled(place))
+    assert found == [False, False, False, False, False, True]
+
+
 def assert_silent(autopilot) -> None:
     """Fail where set-points still come, once those on their way have."""
     threading.Event().wait(0.05)

@@ -16,6 +16,7 @@ from mmrs_core.analysis.figures import kinematics_of
 from mmrs_core.analysis.motion import motions
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
+from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.scene import Capability, Kinematics
 from mmrs_core.scene.timing import Rates
 from mmrs_core.testing.programs import installed, move, program
@@ -96,6 +97,25 @@ def test_a_robot_on_tracks_turns_before_it_goes_to_what_is_behind_it_as_was_meas
     leg, rates = ((0.0, 0.0, 0.0), (0.0, metres, 0.0)), crawler.rates(0.8)
     assert rates.from_stop_to_stop(*leg, facing=float(aside)) == pytest.approx(seconds, rel=0.03)
     assert rates.latest().from_stop_to_stop(*leg) > seconds
+
+
+@pytest.mark.parametrize(
+    ("metres", "aside", "seconds"), [(12.0, 180, 19.5), (14.42, 146, 21.4), (8.0, 90, 12.7)]
+)
+def test_a_robot_on_tracks_turns_before_it_goes_on_missions_as_was_measured(metres, aside, seconds):
+    """Flown by ArduRover 4.7-dev on tracks in AUTO at 1.0 m/s, WP_PIVOT_ANGLE being 120."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "ground")
+    crawler = Kinematics(
+        cruise=1.0,
+        slowest=0.0,
+        fastest=1.5,
+        climb=1.0,
+        descent=1.0,
+        turn_rate=autopilot.turn_rate,
+        mission=autopilot.mission,
+    ).in_mission()
+    leg = ((0.0, 0.0, 0.0), (0.0, metres, 0.0))
+    assert crawler.rates(1.0).from_stop_to_stop(*leg, facing=float(aside)) == pytest.approx(seconds, rel=0.06)
 
 
 def level_leg(rates, metres):
@@ -233,6 +253,41 @@ def test_the_first_leg_of_a_run_takes_what_the_vehicle_takes_to_set_out():
 
     late, at_once = passed(1.2), passed(0.0)
     assert (late.saved, late.onward) == pytest.approx((at_once.saved - 1.2, at_once.onward + 1.2))
+
+
+PX4_LEGS = [
+    (3.0, 25.0, (13.3, 13.5)),
+    (3.0, 30.0, (14.7, 14.9)),
+    (5.0, 12.0, (6.3, 8.5)),
+    (5.0, 25.0, (10.3, 10.5)),
+    (5.0, 30.0, (11.2, 11.4)),
+    (5.0, 100.0, (25.0, 29.1)),
+]
+"""Commanded speed, metres, and the least and most seconds that legs of a PX4 took, first ones left out."""
+
+
+@pytest.mark.parametrize(("speed", "metres", "measured"), PX4_LEGS)
+def test_a_leg_of_a_px4_is_expected_to_take_what_was_measured(speed, metres, measured):
+    figures = PX4_MULTICOPTER.pacing.step
+    rates = Rates(speed, figures.climb, figures.descent, figures)
+    least, most = measured
+    assert level_leg(rates, metres) == pytest.approx((least + most) / 2.0, rel=0.05)
+    assert level_leg(rates.soonest(), metres) < least
+    assert level_leg(rates.latest(), metres) > most
+
+
+def test_a_px4_lands_as_long_as_was_measured_and_within_the_bounds_of_launch_and_landing():
+    """On missions, 40 landings from 12 m took 13.9 to 28.2 s, and 19.6 s in the mean."""
+    robot = robot_program("alpha", [take_off("up", 12.0), LAND])
+    given = checked(robot)
+    (kind,) = given.types.values()
+    px4 = replace(kind, devices=quad(**{"mavlink.autopilot": "px4"}).devices)
+    kinds = as_uploaded(given.robot_kinds)
+    given = replace(given, types={kind.name: px4}, robot_kinds=kinds)
+    assert kinematics_of(given, robot).landing(12.0) == pytest.approx(19.6, abs=0.2)
+    landing = durations_of(given, robot, motions(given)["alpha"]).of[robot.stop - 1]
+    assert landing.moved.low <= 13.9
+    assert landing.moved.high >= 28.2
 
 
 def on_the_spot(name, **attributes):
