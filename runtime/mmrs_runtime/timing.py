@@ -112,8 +112,8 @@ class LegTiming:
     def _come_to_rest(self, fastest: float, seconds: float) -> float:
         """Return the seconds from the stop of a set-point until a robot that trails it is settled there.
 
-        It comes near, goes beyond, and back; it need not be still once it has been near for long enough. While
-        it turns back, its speed changes by what it comes back at in the seconds by which it trails.
+        It comes near, goes beyond, and back; it need not be still once it has been near for long enough.
+        While it turns back, its speed changes by what it comes back at in the seconds by which it trails.
         """
         behind = self.trailing * fastest * (1.0 - exp(-seconds / self.trailing))
         beyond = self.overshoot * fastest * (1.0 - exp(-seconds / self.swinging))

@@ -226,6 +226,14 @@ class Observer:
                     self.send(mavlink.MAVLink_param_set_message(self.system, 1, code, written, number))
                 time.sleep(0.2)
 
+    def read(self, name: str, patience: float = 4.0) -> float | None:
+        """Return the value of a parameter; None: it does not tell it within so many real seconds."""
+        until = time.monotonic() + patience
+        while name not in self.parameters and time.monotonic() < until:
+            self.send(mavlink.MAVLink_param_request_read_message(self.system, 1, name.encode("ascii"), -1))
+            time.sleep(0.2)
+        return self.parameters.get(name)
+
     def store(self, patience: float = 20.0) -> None:
         """Wait until the vehicle has stored its parameters.
 

@@ -267,19 +267,22 @@ class Flying:
                 vehicle.sign()
         return ("--signing-key", str(file))
 
-    def _generate(self, target: str, where: str) -> None:
+    def _generate(self, target: str, where: str) -> str:
+        """Generate files, and return what was said."""
         command = [sys.executable, "-m", "mmrs_core", "generate", str(self.folder / "behaviour.xmi")]
         command += ["--target", target, "-o", str(self.folder / where), "--allow-lossy", "--force"]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
             raise plans.PlanError(f"{target}: {done.stderr[-300:]}")
+        return done.stdout
 
     def _load_plans(self) -> None:
-        self._generate("qgc-plan", "plans")
+        said = self._generate("qgc-plan", "plans")
         for robot, vehicle in self.vehicles.items():
             (file,) = [p for p in (self.folder / "plans").glob("*.plan") if robot.lower() in p.stem.lower()]
             self._wait(lambda v=vehicle: v.observer.now > 40.0, 120.0)
             px4 = vehicle.firmware is PX4
+            plans.set_up(vehicle.observer, file.name, said)
             self.items = plans.upload(vehicle.observer, file, px4=px4)
             plans.start(vehicle.observer, rover=self.plan.vehicle(robot) == "rover", px4=px4)
 

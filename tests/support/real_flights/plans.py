@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite
@@ -11,6 +12,8 @@ from typing import Any
 
 from firmware import Observer
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_mavlink.limits import Limit
 
 MISSION, FENCE, RALLY = 0, 1, 2
 AUTO, GUIDED = 3, 4
@@ -44,6 +47,24 @@ def upload(observer: Observer, plan: Path, *, px4: bool = False) -> int:
         if items:
             _send(observer, sort, items)
     return len(mission)
+
+
+def set_up(observer: Observer, file: str, said: str) -> None:
+    """Set a vehicle to what its plan asks for, as operators do; what it does not know is another version's.
+
+    Args:
+        observer: of the vehicle.
+        file: name of the plan.
+        said: by what wrote it.
+
+    Raises:
+        TimeoutError: it does not take a parameter.
+    """
+    for name, value, sort in re.findall(rf"{re.escape(file)}: set (\w+) to (\S+) ([^:]+):", said):
+        limit = Limit(name, float(value), "", sort)
+        found = observer.read(name)
+        if found is not None and not limit.holds(found):
+            observer.change({name: limit.value})
 
 
 def start(observer: Observer, *, rover: bool = False, px4: bool = False) -> None:

@@ -16,6 +16,9 @@ Place = tuple[float, float, float]
 CHARGING = 180.0
 """Seconds: the longest that a battery of the crafts' types takes."""
 
+WIND_FROM = 45.0
+"""Degrees from which the wind blows that is expected: half along, half across each leg of a square."""
+
 ORIGIN = 'latitude="42.35" longitude="13.39" altitude="630.0"'
 AT_SEA = 'latitude="40.66" longitude="14.30" altitude="0.0"'
 
@@ -49,6 +52,7 @@ COPTER = Craft(
 )
 PHOTOGRAPHER = replace(COPTER, example="barn", file="yard-drone.xmi", type="Yard drone")
 ROVER = Craft("drone-and-rover", "field-rover.xmi", "Field rover")
+CRAWLER = Craft("mixed-team", "crawler.xmi", "Crawler")
 SUB = Craft("outfall", "survey-auv.xmi", "Survey AUV", origin=AT_SEA)
 
 
@@ -83,8 +87,14 @@ class Route:
     sorties: int = 1
 
 
-def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], None]:
-    """Return what writes a behaviour of these routes; `forbidden` is the shell of an area, of the origin."""
+def routes(*given: Route, forbidden: Sequence[Place] = (), wind: float = 0.0) -> Callable[[Path], None]:
+    """Return what writes a behaviour of these routes.
+
+    Args:
+        given: of one robot each.
+        forbidden: shell of an area, metres of the origin.
+        wind: that is expected, metres per second.
+    """
 
     def write(folder: Path) -> None:
         (folder / "robots").mkdir(parents=True)
@@ -94,7 +104,7 @@ def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], N
             file = folder / "robots" / route.craft.file
             rate = f'maxTurnRate="{route.turns:g}"'
             file.write_text(re.sub(r'maxTurnRate="[^"]*"', rate, file.read_text("utf-8")), "utf-8")
-        (folder / "context.xmi").write_text(_context(given[0].craft.origin, forbidden), "utf-8")
+        (folder / "context.xmi").write_text(_context(given[0].craft.origin, forbidden, wind), "utf-8")
         (folder / "behaviour.xmi").write_text(_behaviour(given), "utf-8")
 
     return write
@@ -217,12 +227,13 @@ def _target(targets: list[str], name: str, place: Place) -> str:
     return f"//@targets.{len(targets) - 1}"
 
 
-def _context(origin: str, forbidden: Sequence[Place]) -> str:
+def _context(origin: str, forbidden: Sequence[Place], wind: float) -> str:
     shell = "".join(
         f'<shell xsi:type="mission:RelativeCoordinate" x="{x:g}" y="{y:g}"/>' for x, y, _ in forbidden
     )
     area = f'<forbiddenAreas name="school" safetyDistance="1.0">{shell}</forbiddenAreas>\n' if shell else ""
     rest = 'name="Route" crs="EPSG:4326"'
-    weather = '<environment windSpeed="0.0" windDirection="0.0" temperature="20.0" waterDensity="1025.0"/>\n'
+    weather = f'<environment windSpeed="{wind:g}" windDirection="{WIND_FROM:g}" temperature="20.0"'
+    weather += ' waterDensity="1025.0"/>\n'
     zero = f'<origin xsi:type="mission:GeoCoordinate" {origin}/>\n'
     return HEAD.format(root="context:Context", rest=rest) + zero + area + weather + "</context:Context>\n"

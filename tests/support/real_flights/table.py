@@ -15,6 +15,7 @@ from real_flights.flight import (
     HOME,
     MEND,
     PLAN,
+    RUN,
     SURFACE,
     Begun,
     Change,
@@ -29,7 +30,19 @@ from real_flights.flight import (
     Resume,
     When,
 )
-from real_flights.routes import COPTER, PHOTOGRAPHER, ROVER, SUB, Craft, Route, example, on_px4, routes
+from real_flights.routes import (
+    COPTER,
+    CRAWLER,
+    PHOTOGRAPHER,
+    ROVER,
+    SUB,
+    WIND_FROM,
+    Craft,
+    Route,
+    example,
+    on_px4,
+    routes,
+)
 
 SQUARE = ((0.0, 30.0, 12.0), (25.0, 30.0, 12.0), (25.0, 0.0, 12.0), (0.0, 0.0, 12.0))
 LAWN = tuple(
@@ -267,6 +280,43 @@ ROVERS = (
     Flight("rover: long legs", routes(Route("Badger", ROVER, STREET, 1.5)), deviation=3.0, landing=4.0),
     Flight("rover: arcs", routes(Route("Badger", ROVER, ARCS, 1.0)), deviation=3.0, landing=4.0),
 )
+FURROWS = ((0.0, 20.0, 0.0), (8.0, 20.0, 0.0), (8.0, 0.0, 0.0), (8.0, 12.0, 0.0), (0.0, 0.0, 0.0))
+"""Corners, and a way back on which tracks turn round on the spot."""
+
+CRAWLERS = tuple(
+    Flight(
+        f"tracked rover: {name}",
+        routes(Route("Crawler", CRAWLER, FURROWS, 1.0)),
+        way=way,
+        deviation=3.0,
+        landing=4.0,
+    )
+    for name, way in (("legs", RUN), ("plan in AUTO", PLAN))
+)
+DIVE = ((10.0, 0.0, -1.0), (10.0, 0.0, -9.0), (10.0, 15.0, -2.0), (10.0, 15.0, -9.0), (0.0, 0.0, 0.0))
+DIVES = tuple(
+    Flight(
+        f"sub: {name}",
+        routes(Route("Nereid", SUB, DIVE, 0.8)),
+        way=way,
+        deviation=3.0,
+        landing=4.0,
+    )
+    for name, way in (("up and down", RUN), ("up and down in AUTO", PLAN))
+)
+WIND = 5.0
+"""Metres per second."""
+
+WINDS = tuple(
+    Flight(
+        f"copter: wind, {name}",
+        routes(_short(COPTER), wind=WIND),
+        way=way,
+        deviation=2.0,
+        parameters={"SIM_WIND_SPD": WIND, "SIM_WIND_DIR": WIND_FROM},
+    )
+    for name, way in (("legs", RUN), ("plan in AUTO", PLAN))
+)
 MOTORS = (_upset(COPTER, "motor fails", (AT_LEG, Change(NO_MOTOR)), ends=AWAY, fault="MOTOR_FAILED"),)
 FENCES = tuple(
     _upset(
@@ -310,9 +360,18 @@ def _as_px4(flight: Flight, **changes: Any) -> Flight:
     )
 
 
+FIELD = tuple(
+    (12.0 * row, 100.0 * (row % 2 if end == 0 else 1 - row % 2), 12.0) for row in range(16) for end in (0, 1)
+)
+"""Ten minutes, so that the luck of a landing is less than the twentieth within which times are judged."""
+
+FIELDS = tuple(
+    Flight(f"copter: {name}", routes(Route("Alba", COPTER, (*FIELD, (0.0, 0.0, 12.0)), 5.0)), way=way)
+    for name, way in (("ten minutes", RUN), ("ten minutes in AUTO", PLAN))
+)
 _COPTERS = {
     flight.name.removeprefix("copter: "): flight
-    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER), *AREAS)
+    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER), *AREAS, *FIELDS)
 }
 PX4S = (
     *(
@@ -321,6 +380,7 @@ PX4S = (
             *("legs", "fluid", "plan in AUTO", "turns", "two sorties", "area to fence"),
             *("hold, then resume", "order return", "order stop", "order land"),
             *("link cut for 40 s", "process killed"),
+            *("ten minutes", "ten minutes in AUTO"),
         )
     ),
     _as_px4(_COPTERS["photos in passing"], parameters={"TRIG_MODE": 4.0}),
@@ -347,6 +407,9 @@ have ended it climbs to return, too far off its path for a program that is resum
 FLIGHTS = (
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _ways(craft)),
     *ROVERS,
+    *CRAWLERS,
+    *DIVES,
+    *WINDS,
     *LAWNS,
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _orders(craft)),
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _faults(craft)),
