@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
 from typing import TYPE_CHECKING
@@ -172,6 +173,8 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
     """
     rates, legs = kinematics.rates(move.speed), list(pairwise(path))
     soonest = rates.soonest()
+    if move.speed is not None and move.speed > soonest.cruise:  # as commanded, where the flow lets it
+        soonest = replace(soonest, cruise=move.speed)
     latest, facing, push = rates.latest(), kinematics.facing, kinematics.push
     entering = kinematics.entering
     out = kinematics.setting_out() if kinematics.sets_out and legs else MoveSeconds.exactly(0.0)

@@ -193,8 +193,8 @@ PX4_COPTER = AutopilotTiming(
         overshoot=0.34,
         returning=0.4,
         trailing=1.05,
-        swinging=4.85,
-        waiting=4.1,
+        swinging=3.7,
+        waiting=4.35,
         spread=0.5,
         reporting=10.0,
     ),
@@ -225,7 +225,7 @@ PX4_COPTER = AutopilotTiming(
     launch=5.3,
     recovery=6.6,
     noticing=1.5,
-    guiding=2.4,
+    guiding=1.8,
     landing_rate=0.7,
     landing_height=6.9,
     turn_rate=45.0,
@@ -246,7 +246,7 @@ left slowly. The overshoot and its time constant are those of the drag of its si
 kilogram, from which 0.9 m at 3 m/s, 1.2 to 1.9 m at 5 m/s and 2.5 m at 8 m/s follow, and were measured.
 It counts as settled once it has been within 1.5 m for 4 s in all, since it may estimate all that time that
 it moves.
-It makes no more than 9.8 m/s there. A first leg begins 2.4 s late, since OFFBOARD wants set-points before
+It makes no more than 9.8 m/s there. A first leg begins 1.8 s late, since OFFBOARD wants set-points before
 (guiding).
 
 On missions an item is over once it has been within its radius for a second. Against its drag it comes near to

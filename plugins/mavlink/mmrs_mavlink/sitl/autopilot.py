@@ -292,7 +292,8 @@ class SimulatedAutopilot:
 
     def spin_up(self) -> None:
         """Begin a take-off: it climbs once its motors have spun up."""
-        self.climbs_at = self.time + (self.settings.profile.pacing.launch or 0.0)
+        pacing = self.settings.profile.pacing
+        self.climbs_at = self.time + max(0.0, (pacing.launch or 0.0) - pacing.noticing)
 
     def _here(self) -> tuple[float, float, float]:
         """Return the present position as a home; that of a submarine is at the surface above it."""

@@ -240,7 +240,8 @@ def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     body, takes_off = pilot.body, item.command == mavlink.MAV_CMD_NAV_TAKEOFF
     if pilot.flies and not pilot.airborne and not takes_off:
         return False
-    place = pilot.place_of(item)
+    place, pacing = pilot.place_of(item), pilot.settings.profile.pacing
+    body.figures = (takes_off and pacing.upright) or pacing.mission or pacing.step
     if takes_off:
         place = (*body.position[:2], place[2])
         if not pilot.airborne and body.target is None:
