@@ -19,7 +19,7 @@ _LONGEST_LIST = 3
 _NOT_IN_XML = [chr(code) for code in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)]
 """What XML 1.0 cannot hold at all, section 2.2."""
 
-TEXTS = st.text(st.characters(codec="utf-8", exclude_characters=_NOT_IN_XML), max_size=12)
+TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters=_NOT_IN_XML), max_size=12)
 """Any text that a file can hold."""
 
 WORDS = st.from_regex(r"[a-zA-Z][a-zA-Z0-9]{0,7}", fullmatch=True)
@@ -77,7 +77,7 @@ def _of_type(kind: DataType) -> st.SearchStrategy[Any]:
     if java in ("float", "Float"):
         return st.floats(allow_nan=False, allow_infinity=False, width=32)
     if java in ("char", "Character"):
-        return st.characters(codec="utf-8", max_codepoint=0xFFFF)
+        return st.characters(exclude_categories=["Cs"], max_codepoint=0xFFFF)
     if java == "Class":
         return st.just("java.lang.String")
     if kind.ns_uri == XML_TYPES and kind.python is str:
