@@ -100,6 +100,7 @@ def test_many_paths_are_shortest_and_clear(seed):
     check(seed)
 
 
+@pytest.mark.thorough
 def test_paths_are_the_same_where_nothing_is_compiled(monkeypatch):
     pytest.importorskip("numba", reason="loops are compiled with numba (extra fast) only")
 

@@ -208,7 +208,10 @@ def test_of_two_robots_that_meet_the_one_starts_later_that_is_back_sooner():
     assert set(Traffic(whole, found, 10.0).later_starts()) == {"a short one"}
 
 
-@pytest.mark.parametrize(("robots", "side", "seed", "share"), [(8, 200.0, 1, 1.01), (50, 400.0, 2, 1.1)])
+@pytest.mark.parametrize(
+    ("robots", "side", "seed", "share"),
+    [(8, 200.0, 1, 1.01), pytest.param(50, 400.0, 2, 1.1, marks=pytest.mark.thorough)],
+)
 def test_robots_of_a_large_team_start_no_later_than_the_last_of_them_allows(robots, side, seed, share):
     rng = np.random.default_rng(seed)
     team = tuple(robot(f"r{k:02}", (10.0 * (k % 5), 10.0 * (k // 5), 0.0)) for k in range(robots))
