@@ -10,7 +10,7 @@ from plan_replay import complaints
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
-from mmrs_core.scene import AreaUse
+from mmrs_core.scene import Area, AreaUse
 from mmrs_runtime.policies import Policy
 
 ESCAPES = (Policy("LINK_LOST", "EMERGENCY_AREA"),)
@@ -122,14 +122,12 @@ def test_a_task_that_is_too_long_beside_a_diversion_tells_what_is_kept():
 
 
 def test_an_area_behind_a_wall_that_leaves_no_way_is_none():
-    fence = [
-        box("west", -300.0, -300.0, -290.0, 900.0),
-        box("north", -300.0, 890.0, 900.0, 900.0),
-        box("east", 890.0, -300.0, 900.0, 900.0),
-        box("south", -300.0, -300.0, 900.0, -290.0),
-    ]
+    outer = ((-300.0, -300.0), (900.0, -300.0), (900.0, 900.0), (-300.0, 900.0), (-300.0, 300.5))
+    inner = ((-290.0, 300.5), (-290.0, 890.0), (890.0, 890.0), (890.0, -290.0), (-290.0, -290.0))
+    gap = ((-290.0, 299.5), (-300.0, 299.5))
+    fence = Area("fence", AreaUse.FORBIDDEN, (*outer, *inner, *gap), safety_distance=2.0)
     assert "no emergency area can be reached from its home (policy LINK_LOST)" in reason(
-        flight(600.0, areas=fence)
+        flight(600.0, areas=(fence,))
     )
 
 
