@@ -7,20 +7,22 @@ import pytest
 
 from mmrs_core.resources import shipped
 
+NAME = "lane above the road"
 LANE = {
     "type": "Feature",
-    "properties": {"name": "lane"},
+    "properties": {"name": NAME},
     "geometry": {"type": "LineString", "coordinates": [[13.35035, 42.37005], [13.351, 42.37012]]},
 }
 
 
 @pytest.fixture
 def fields(mmrs, tmp_path):
-    """Return a project with a corridor that was drawn."""
+    """Return a project with a corridor that was drawn: that of the page on corridors, planned only once."""
     project = shutil.copytree(shipped("examples") / "carbon-dioxide", tmp_path / "fields")
     drawing = tmp_path / "lane.geojson"
     drawing.write_text(json.dumps({"type": "FeatureCollection", "features": [LANE]}))
-    code, _, err = mmrs("import", drawing, "--into", project, "--as", "lane=Corridor:width=14,minHeight=30")
+    options = "lane*=Corridor:width=14,minHeight=30,maxHeight=60"
+    code, _, err = mmrs("import", drawing, "--into", project, "--as", options)
     assert code == 0, err
     return project
 
@@ -30,9 +32,9 @@ def test_a_corridor_is_planned_through_verified_and_drawn(mmrs, fields, tmp_path
     code, out, _ = mmrs("check", fields, "--json")
     found = {each["property"]: each for each in json.loads(out)["verdicts"] if each["robot"] == "Alba"}
     assert (code, found["corridors"]["status"]) == (0, "safe")
-    assert "leads through 'lane'" in found["corridors"]["message"]
+    assert f"leads through '{NAME}'" in found["corridors"]["message"]
     assert mmrs("preview", fields, "-o", tmp_path / "seen")[0] == 0
-    assert "lane: corridor, width 14" in (tmp_path / "seen" / "preview.svg").read_text(encoding="utf-8")
+    assert f"{NAME}: corridor, width 14" in (tmp_path / "seen" / "preview.svg").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("form", ["geojson", "kml"])
@@ -49,5 +51,5 @@ def test_a_corridor_without_a_width_is_refused(mmrs, tmp_path):
     project = shutil.copytree(shipped("examples") / "carbon-dioxide", tmp_path / "fields")
     drawing = tmp_path / "lane.geojson"
     drawing.write_text(json.dumps({"type": "FeatureCollection", "features": [LANE]}))
-    code, _, err = mmrs("import", drawing, "--into", project, "--as", "lane=Corridor")
-    assert (code, "Corridor 'lane': width is 0, but must be more than 0 [CTX018]" in err) == (1, True)
+    code, _, err = mmrs("import", drawing, "--into", project, "--as", "lane*=Corridor")
+    assert (code, f"Corridor '{NAME}': width is 0, but must be more than 0 [CTX018]" in err) == (1, True)

@@ -26,8 +26,9 @@ from mmrs_core.resources import shipped
 
 pytestmark = pytest.mark.together("examples")
 
-FORMATS = ("geojson", "kml", "kmz")
-"""Those that express areas, heights and times alike."""
+FORMATS = ("geojson", "kml", pytest.param("kmz", marks=pytest.mark.thorough))
+"""Those that express areas, heights and times alike; the last one is the second one, packed."""
+PACKED = ("geojson", "kml", "kmz")
 EXAMPLES = ("carbon-dioxide", "mixed-team", "solar-park")
 ACTIONS = ("behaviour:DeviceAction", "behaviour:Feedback")
 TYPE, GEO = "{http://www.w3.org/2001/XMLSchema-instance}type", "mission:GeoCoordinate"
@@ -131,6 +132,7 @@ def test_the_dive_is_as_deep_as_the_task_asks(exported, form, taken):
     assert min(dive.heights[0]) < surface - 7.9
 
 
+@pytest.mark.parametrize("form", PACKED)
 def test_gdal_reads_every_feature(exported, form, need_program):
     ogrinfo = need_program("ogrinfo", "it reads what is exported as QGIS does")
     _, file, drawing = exported("mixed-team", form)
@@ -162,7 +164,7 @@ def attributes_of(project, contributions):
     }
 
 
-@pytest.mark.parametrize("form", [*FORMATS, "gpx"])
+@pytest.mark.parametrize("form", [*PACKED, "gpx"])
 def test_tasks_are_imported_with_their_types_and_all_attributes(form, contributions, tmp_path, capsys):
     project, again = (
         Path(shutil.copytree(shipped("examples") / "mixed-team", tmp_path / "dam")),
