@@ -17,8 +17,7 @@ import numpy as np
 from mmrs_core.analysis.dependencies import certain_moves
 from mmrs_core.analysis.distance import Floats, paired_distances, segment_distance
 from mmrs_core.analysis.occupations import Occupation
-from mmrs_core.analysis.order import HappensBefore
-from mmrs_core.analysis.times import times_of
+from mmrs_core.analysis.times import order_of
 from mmrs_core.analysis.verdicts import TOLERANCE
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.scene import Position
@@ -53,7 +52,7 @@ class ProvenOrder:
     """What waits for each other prove of a behaviour's occupations."""
 
     def __init__(self, input: CheckInput) -> None:
-        self._before = HappensBefore(input.program, times_of(input).dependencies)
+        self._before = order_of(input)
         self._certain = {robot.id: certain_moves(robot) for robot in input.program.robots}
 
     def keeps_apart(self, one: Occupation, other: Occupation) -> bool:

@@ -2,8 +2,9 @@
 
 Two radios reach each other where their distance is at most the smaller of both ranges; that of the control
 station at a robot's home is the robot's own. So a robot is in range in balls about its home and about the
-relays with a chain. How far it is inside of one ball is concave along a straight leg, so that the least of
-the largest over all balls lies at an end of the leg, or where another ball takes the lead.
+relays with a chain; robots that are relays count while they certainly are (see `relay_robots`). How far it is
+inside of one ball is concave along a straight leg, so that the least of the largest over all balls lies at an
+end of the leg, or where another ball takes the lead.
 """
 
 from __future__ import annotations
@@ -17,14 +18,15 @@ import numpy as np
 from mmrs_core.analysis.distance import Floats
 from mmrs_core.analysis.figures import MissingFigureError, home_of, type_of
 from mmrs_core.analysis.motion import MovePath, motions
+from mmrs_core.analysis.relay_robots import certain_stands, stands_of
 from mmrs_core.analysis.stations import Station, stations_of
-from mmrs_core.analysis.verdicts import Margin, for_each_robot, judged
+from mmrs_core.analysis.verdicts import TOLERANCE, Margin, for_each_robot, judged
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.diagnostics import lengths
 from mmrs_core.scene import Position
 from mmrs_core.scene.attributes import number
-from mmrs_core.scene.relays import relays_of
+from mmrs_core.scene.relays import Relay, relays_of
 
 RANGE_NAME = "range"
 
@@ -101,11 +103,12 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
             f"{robot.id}: the communicationRange of robot type '{robot.type_name}' is not given"
         )
     relays = relays_of(input.elements)
+    radio = _Radio(input, robot, reach, relays)
     stations, left_out = stations_of(home_of(robot), reach, relays)
-    motion, error = motions(input)[robot.id], input.program.position_error
     worst: dict[int, Margin] = {}
+    motion = motions(input)[robot.id]
     for leg in motion.paths:
-        found = _margin(robot, leg, stations, error, placed=bool(relays))
+        found = radio.margin(leg, stations)
         if leg.move not in worst or found.value < worst[leg.move].value:
             worst[leg.move] = found
     caveat = "; ".join(f"relay '{relay.name}' is left out: {why}" for relay, why in left_out)
@@ -113,17 +116,60 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
         yield replace(verdict, caveat=caveat)
 
 
-def _margin(
-    robot: RobotProgram, leg: MovePath, stations: Sequence[Station], error: float, *, placed: bool
-) -> Margin:
-    move, unsure = robot.moves[leg.move], leg.radius + error
-    inside, place, station = least_inside(leg.points, stations)
-    away, limit = lengths(dist(place, station.centre) + unsure, station.radius)
-    there = " at ({:.1f}, {:.1f}, {:.1f})".format(*place) if placed else ""
-    words = (
-        f"{move.kind} '{move.id}' leads {away} away from {station.words}{there}, the radio reaches {limit}"
-    )
-    return Margin(inside - unsure, leg.move, words)
+@dataclass(frozen=True, slots=True)
+class _Radio:
+    """What a robot's radio reaches, within `reach` metres, over relays of the context and other robots."""
+
+    input: CheckInput
+    robot: RobotProgram
+    reach: float
+    relays: Sequence[Relay]
+
+    def margin(self, leg: MovePath, stations: Sequence[Station]) -> Margin:
+        """Return how far a path is inside of what is reached at least.
+
+        Where it is outside of what home and the relays of the context reach, the robots count that certainly
+        are relays during the move, and where it ends those that are during the wait after it.
+        """
+        found = self._over(leg, stations)
+        if found.value >= -TOLERANCE or all(
+            stand.after[0] == self.robot.id for stand in stands_of(self.input)
+        ):
+            return found
+        found = self._during(leg, waiting=False)
+        end = replace(leg, points=leg.points[-1:])
+        if leg.move != self.robot.stop and self._over(end, stations).value < -TOLERANCE:
+            found = min(found, self._during(end, waiting=True), key=lambda each: each.value)
+        return found
+
+    def _during(self, leg: MovePath, *, waiting: bool) -> Margin:
+        certain = certain_stands(self.input, self.robot, leg.move, waiting=waiting)
+        found = self._over(leg, self._stations(certain))
+        if found.value >= -TOLERANCE:
+            return found
+        others = [each.relay for each in stands_of(self.input) if each.after[0] != self.robot.id]
+        doubtful = {each.name for each in others} - {each.name for each in certain}
+        if not doubtful or self._over(leg, self._stations(others)).value < -TOLERANCE:
+            return found
+        names = ", ".join(f"'{name}'" for name in sorted(doubtful))
+        when = "during the wait after it" if waiting else "throughout"
+        words = f"it is not certain that {names} is a relay {when}"
+        return replace(found, message=f"{found.message}; {words}")
+
+    def _stations(self, robots: Sequence[Relay]) -> list[Station]:
+        return stations_of(home_of(self.robot), self.reach, (*self.relays, *robots))[0]
+
+    def _over(self, leg: MovePath, stations: Sequence[Station]) -> Margin:
+        move, unsure = self.robot.moves[leg.move], leg.radius + self.input.program.position_error
+        inside, place, station = least_inside(leg.points, stations)
+        away, limit = lengths(dist(place, station.centre) + unsure, station.radius)
+        placed = bool(self.relays) or len(stations) > 1
+        there = " at ({:.1f}, {:.1f}, {:.1f})".format(*place) if placed else ""
+        words = (
+            f"{move.kind} '{move.id}' leads {away} away from {station.words}{there},"
+            f" the radio reaches {limit}"
+        )
+        return Margin(inside - unsure, leg.move, words)
 
 
 RANGE = Check(

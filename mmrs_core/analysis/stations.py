@@ -18,7 +18,7 @@ class Station:
     Attributes:
         name: of the relay; empty: home.
         centre: (east, north, up), metres.
-        radius: metres, the smaller of both ranges.
+        radius: metres, the smaller of both ranges less what the relay may be elsewhere.
     """
 
     name: str
@@ -38,15 +38,20 @@ def stations_of(
     chained = [Relay("", home, reach)]
     left = list(relays)
     for here in chained:
-        reached = [each for each in left if dist(here.position, each.position) <= min(here.range, each.range)]
+        reached = [each for each in left if _apart(here, each) <= min(here.range, each.range)]
         chained.extend(reached)
         left = [each for each in left if each not in reached]
-    stations = [Station(each.name, each.position, min(reach, each.range)) for each in chained]
+    stations = [Station(each.name, each.position, min(reach, each.range) - each.spread) for each in chained]
     return stations, [(each, _severed(each, chained)) for each in left]
 
 
+def _apart(one: Relay, two: Relay) -> float:
+    """Return how far apart two relays may be, metres."""
+    return dist(one.position, two.position) + one.spread + two.spread
+
+
 def _severed(relay: Relay, chained: Sequence[Relay]) -> str:
-    near = min(chained, key=lambda each: dist(each.position, relay.position) - min(each.range, relay.range))
-    away, allowed = lengths(dist(near.position, relay.position), min(near.range, relay.range))
+    near = min(chained, key=lambda each: _apart(each, relay) - min(each.range, relay.range))
+    away, allowed = lengths(_apart(near, relay), min(near.range, relay.range))
     words = Station(near.name, near.position, near.range).words
     return f"it is {away} from {words}, they reach each other within {allowed}"

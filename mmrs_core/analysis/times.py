@@ -65,6 +65,15 @@ def times_of(input: CheckInput) -> Times:
     return once(input, _times)
 
 
+def order_of(input: CheckInput) -> HappensBefore:
+    """Return what is over when moves begin; found once for all checks."""
+    return once(input, _order)
+
+
+def _order(input: CheckInput) -> HappensBefore:
+    return HappensBefore(input.program, times_of(input).dependencies)
+
+
 def _times(input: CheckInput) -> Times:
     moving = motions(input)
     durations = {robot.id: durations_of(input, robot, moving[robot.id]) for robot in input.program.robots}

@@ -111,7 +111,7 @@ class ContextElement(mission.NamedElement):
     ) -> None: ...
 
 class Relay(ContextElement):
-    """A relay that stands still, such as a mast, a moored boat or a parked vehicle: it passes on the radio between robots, other relays and the control station, which is at a robot's home. Two of them reach each other where their distance is at most the smaller of both ranges; the range of a robot, and of the control station for that robot, is the communicationRange of its type. A robot is in range where it reaches its home, or a relay from which a chain of relays leads there."""
+    """A relay that stands still, such as a mast, a moored boat or a parked vehicle: it passes on the radio between robots, other relays and the control station, which is at a robot's home. Two of them reach each other where their distance is at most the smaller of both ranges; the range of a robot, and of the control station for that robot, is the communicationRange of its type. A robot is in range where it reaches its home, or a relay from which a chain of relays leads there. A robot whose type has a relayRange is a relay, too, while it holds its position."""
     position: mission.Coordinate
     """Where its antenna is."""
     range: float

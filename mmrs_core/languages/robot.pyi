@@ -44,7 +44,9 @@ class Robot(Element):
     pressuremeter: bool
     """Whether a pressure meter is on board."""
     communicationRange: float | None
-    """Maximum range of the radio control, in metres, to the control station at home or to a relay of the context; absent: unknown."""
+    """Maximum range of the radio control, in metres, to the control station at home, to a relay of the context or to a robot that is a relay; absent: unknown."""
+    relayRange: float | None
+    """Maximum range, in metres, of the relay on board, which passes on the radio between other robots, relays and the control station while the robot holds its position away from the ground; absent: it carries no relay."""
     dataRate: float | None
     """Data rate between robot and control station, in kilobits per second."""
     radioFrequency: float | None
@@ -81,6 +83,7 @@ class Robot(Element):
         barometer: bool | None = ...,
         pressuremeter: bool | None = ...,
         communicationRange: float | None = ...,
+        relayRange: float | None = ...,
         dataRate: float | None = ...,
         radioFrequency: float | None = ...,
         rangingSystem: Iterable[RangingSystem] | None = ...,

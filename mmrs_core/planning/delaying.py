@@ -14,10 +14,11 @@ def delayed(scene: Scene, plan: Plan, robot: str, waits: Mapping[int, float]) ->
     """Return the plan in which a robot waits longer before some of its steps: seconds, by index."""
     steps = {each.robot: each.steps for each in plan.robots}
     steps[robot] = tuple(_with_waits(steps[robot], waits))
-    return _with_steps(scene, plan, steps)
+    return retimed(scene, plan, steps)
 
 
-def _with_steps(scene: Scene, plan: Plan, steps: Mapping[str, tuple[Step, ...]]) -> Plan:
+def retimed(scene: Scene, plan: Plan, steps: Mapping[str, tuple[Step, ...]]) -> Plan:
+    """Return the plan with other steps, by robot, each as soon as what it waits for."""
     timed = _timed(steps)
     robots = tuple(_changed(each, timed[each.robot]) for each in plan.robots)
     spans = spans_of(scene, timed)

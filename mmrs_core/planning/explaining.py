@@ -17,6 +17,7 @@ from mmrs_core.planning.corridors import gone_through
 from mmrs_core.planning.critical_path import Link, critical_path
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
+from mmrs_core.planning.relaying import without_relays
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import distance_to_keep
@@ -124,6 +125,8 @@ def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanat
 
 class _Explaining:
     def __init__(self, scene: Scene, plan: Plan, timed: Plan) -> None:
+        self._makespan = plan.makespan
+        scene, plan = without_relays(scene, plan)
         self._scene, self._plan, self._timed, self._jobs = scene, plan, timed, jobs_of(scene)
         self._groups = _groups(plan)
         self._decisions = Decisions(_order(plan, self._jobs), self._groups)
@@ -256,7 +259,12 @@ class _Explaining:
         scene, found = self._scene, self._found
         if not isinstance(found, Schedule):
             return
-        if distance_to_keep(scene) is not None:
+        apart = distance_to_keep(scene) is not None
+        if scene.stations:
+            names = ", ".join(f"'{station.name}'" for station in scene.stations)
+            words = f"robots wait for {names}, which come home last{', and keep apart' if apart else ''}"
+            yield Limit("relays", self._makespan - max(self._ends), words)
+        elif apart:
             words = f"robots keep {scene.minimum_separation:g} m apart"
             yield Limit("separation", self._plan.makespan - max(self._ends), words)
         if any(job.after for job in self._jobs):

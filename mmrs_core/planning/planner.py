@@ -17,6 +17,7 @@ from mmrs_core.planning.charges import short_of_charge
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
+from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
 from mmrs_core.planning.remedies import (
     counted,
     for_all_charges,
@@ -52,7 +53,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     sortie takes more than a charge less the reserve allows, waits included; every leg keeps its
     clearance. The same scene and seed give the same plan, unless a time or a stop ends the search. Where
     a task leaves open how many robots it wants, numbers are tried too (see `robot_counts`): in a small
-    mission no other number ends it sooner.
+    mission no other number ends it sooner. Tasks in which robots stay as relays are planned around the others
+    (see `plan_with_relays`).
 
     Args:
         scene: expanded: kinematics and works are known.
@@ -62,6 +64,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     Raises:
         InfeasibleError: no plan was found; its reasons give what is short, and by how much.
     """
+    if relay_tasks(scene):
+        return plan_with_relays(scene, lambda part, its: plan(part, seed=seed, effort=its), effort)
     jobs = jobs_of(scene)
     team = Team(scene)
     if (found := _leaving_enough(team, seed, effort)) is not None:

@@ -47,7 +47,7 @@ class Reach:
     Attributes:
         names: of relays; empty for the control station at home, which comes first.
         centres: (east, north, up) of each, metres.
-        ranges: the smaller of both ranges, metres.
+        ranges: the smaller of both ranges, metres, less what the relay may be elsewhere.
         error: of positions, by which balls are smaller, metres.
         severed: names of the relays that have no chain to home.
     """
@@ -163,17 +163,22 @@ def reach_of(robot: Robot, relays: Sequence[Relay], error: float) -> Reach | Non
     position = 0
     while position < len(chain):
         here = chain[position]
-        near = [each for each in rest if dist(each.position, here.position) <= min(each.range, here.range)]
+        near = [each for each in rest if _linked(each, here)]
         chain += near
         rest = [each for each in rest if each not in near]
         position += 1
     return Reach(
         tuple(each.name for each in chain),
         tuple(each.position for each in chain),
-        tuple(min(range, each.range) for each in chain),
+        tuple(min(range, each.range) - each.spread for each in chain),
         error,
         tuple(each.name for each in rest),
     )
+
+
+def _linked(one: Relay, two: Relay) -> bool:
+    apart = dist(one.position, two.position) + one.spread + two.spread
+    return apart <= min(one.range, two.range)
 
 
 class Reaches:
@@ -185,7 +190,8 @@ class Reaches:
         Args:
             scene: expanded.
         """
-        self._relays, self._error = relays_of(scene.elements), scene.position_error
+        self._relays = (*relays_of(scene.elements), *scene.stations)
+        self._error = scene.position_error
         self._known: dict[tuple[Position, float | None], Reach | None] = {}
         self._corners = tuple(_corners(scene))
 

@@ -230,7 +230,7 @@ class Travel:
         """Return the same route, its route gone at a commanded speed; None: at the robot's cruise."""
         if speed is None:
             return route
-        before, now = self._gone(route.points), self._gone(route.points, speed)
+        before, now = self.going(route.points), self.going(route.points, speed)
         shortest, expected, longest = (
             whole - a + b for whole, a, b in zip(route.bounds, before, now, strict=True)
         )
@@ -274,7 +274,7 @@ class Travel:
             told = self.kinematics.setting_out().longest + self.kinematics.timing.reporting
             return replace(route, longest=route.longest + told)
         down = self._down(goal, space)
-        seconds = MoveSeconds(*(a + b for a, b in zip(self._gone(points), down.bounds, strict=True)))
+        seconds = MoveSeconds(*(a + b for a, b in zip(self.going(points), down.bounds, strict=True)))
         return self._route(points, seconds, length_of(points) + down.length, down.height)
 
     def gates(self, corridors: Corridors, heights: Iterable[float]) -> dict[Position, MoveSeconds]:
@@ -311,7 +311,7 @@ class Travel:
         return self._upright(self.kinematics.landing(drop)).longest
 
     def _timed(self, points: tuple[Position, ...]) -> Route:
-        return self._route(points, self._gone(points), length_of(points))
+        return self._route(points, self.going(points), length_of(points))
 
     def _route(
         self, points: tuple[Position, ...], seconds: MoveSeconds, length: float, height: float | None = None
@@ -319,7 +319,7 @@ class Travel:
         shortest, expected, longest = seconds
         return Route(points, expected, length, height, expected - shortest, longest)
 
-    def _gone(self, points: tuple[Position, ...], speed: float | None = None) -> MoveSeconds:
+    def going(self, points: tuple[Position, ...], speed: float | None = None) -> MoveSeconds:
         """Return how long it takes from the first of some points to the last."""
         soonest, rates, latest = self.bounds(speed)
         quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop

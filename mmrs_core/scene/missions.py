@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import AltitudeReference, Part, Point, Ring
+from mmrs_core.scene.relays import Relay
 from mmrs_core.scene.robots import Robot
 from mmrs_core.scene.works import Work
 from mmrs_runtime.faults import BATTERY_LOW
@@ -186,6 +187,7 @@ class Scene:
             scene is expanded. A pair that is missing means the robot cannot do the task; why is in
             `refusals`.
         refusals: by (task name, robot name): why that robot cannot do that task.
+        stations: other robots that are relays at their places while those of the scene do their tasks.
     """
 
     name: str
@@ -205,6 +207,7 @@ class Scene:
     accepted_unknowns: tuple[str, ...] = ()
     works: Mapping[tuple[str, str], Work] = field(default_factory=dict)
     refusals: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    stations: tuple[Relay, ...] = ()
 
     def task(self, name: str) -> Task:
         """Return the task of that name."""

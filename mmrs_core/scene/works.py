@@ -180,6 +180,8 @@ class Work:
         gaps: what is left out of lines, since it cannot be followed.
         notes: what users should know of it, such as what it costs that a device lacks; shown with the plan
             after the names of task and robot.
+        relays: whether the robot stays where the work ends, as a relay of its type's `relayRange`, until no
+            other robot needs it; it then does nothing else.
     """
 
     strokes: tuple[Stroke, ...]
@@ -190,6 +192,7 @@ class Work:
     coverage: Coverage | None = None
     gaps: tuple[Gap, ...] = ()
     notes: tuple[str, ...] = ()
+    relays: bool = False
 
 
 class SharedWorks(Mapping[tuple[str, str], Work]):

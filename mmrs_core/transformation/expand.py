@@ -36,7 +36,7 @@ from mmrs_core.scene import (
     Value,
     Work,
 )
-from mmrs_core.scene.relays import Relay, relays_of
+from mmrs_core.scene.relays import Relay, relay_range, relays_of, station_of
 from mmrs_runtime.policies import in_precedence
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
@@ -65,12 +65,14 @@ def expand(
             for robot in robots
         }
     )
-    radio = _Radio(relays_of(scene.elements), scene.position_error)
-    sorts = [_Sort(robots, sort, works.sorts, radio) for sort in range(len(numbers))]
+    sorts = [_Sort(robots, sort, works.sorts) for sort in range(len(numbers))]
+    tasks = [task for task in scene.tasks if not task.part.is_a(CONTROL_TASK)]
+    found = {task.name: _works_of(task, scene, rules, sorts) for task in tasks}
+    stations = dict.fromkeys(_stations(found, sorts, scene.position_error))
+    radio = _Radio((*relays_of(scene.elements), *stations), scene.position_error)
     refusals = _Refusals(works, robots, radio)
-    for task in scene.tasks:
-        if not task.part.is_a(CONTROL_TASK):
-            _expand_task(task, scene, rules, sorts, refusals)
+    for name, each in found.items():
+        _share(name, each, sorts, refusals)
     reasons = list(_undoable(scene, works, refusals, radio))
     if reasons:
         raise InfeasibleError(f"{len(reasons)} of the tasks can be done by no robot", reasons)
@@ -81,7 +83,7 @@ class _Radio:
     """Where the radios of robots reach; found once for those of one home.
 
     Attributes:
-        relays: of the context.
+        relays: of the context, and all that robots may be.
         error: of positions, metres.
     """
 
@@ -99,21 +101,21 @@ class _Radio:
 class _Sort:
     """Robots that do alike what each of them can do, so that one work serves all whose radio reaches it."""
 
-    def __init__(self, robots: Sequence[Robot], sort: int, sorts: Mapping[str, int], radio: _Radio) -> None:
+    def __init__(self, robots: Sequence[Robot], sort: int, sorts: Mapping[str, int]) -> None:
         self.places = [i for i, robot in enumerate(robots) if sorts[robot.name] == sort]
         self.robots = [robots[i] for i in self.places]
-        self.first, self._radio = self.robots[0], radio
+        self.first = self.robots[0]
         self._range = range_of(self.first)
         self._homes = np.array([robot.home for robot in self.robots])
 
-    def reached(self, work: Work) -> NDArray[np.bool_] | bool:
+    def reached(self, work: Work, radio: _Radio) -> NDArray[np.bool_] | bool:
         """Return, by robot, whether its radio reaches all of a work from its home, or over relays."""
         if self._range == inf:
             return True
-        reached = _most_distant(work, self._homes) + self._radio.error <= self._range + SLACK
-        if self._radio.relays:
+        reached = _most_distant(work, self._homes) + radio.error <= self._range + SLACK
+        if radio.relays:
             for i in np.flatnonzero(~reached).tolist():
-                reach = self._radio.of(self.robots[i])
+                reach = radio.of(self.robots[i])
                 reached[i] = reach is None or in_range_of(reach, work.strokes)
         return np.asarray(reached)
 
@@ -122,7 +124,7 @@ class _Refusals(Mapping[tuple[str, str], str]):
     """Why robots cannot do tasks; pairs take no room, for words are made when they are asked for."""
 
     def __init__(self, works: SharedWorks, robots: Sequence[Robot], radio: _Radio) -> None:
-        self.works, self._robots, self._radio = works, {robot.name: robot for robot in robots}, radio
+        self.works, self._robots, self.radio = works, {robot.name: robot for robot in robots}, radio
         self.of_sorts: dict[str, Sequence[Work | str]] = {}
 
     def __getitem__(self, pair: tuple[str, str]) -> str:
@@ -133,7 +135,7 @@ class _Refusals(Mapping[tuple[str, str], str]):
         found = self.of_sorts[task][self.works.sorts[robot]]
         if isinstance(found, str):
             return found
-        return out_of_reach(found, self._robots[robot], self._radio.relays, self._radio.error) or ""
+        return out_of_reach(found, self._robots[robot], self.radio.relays, self.radio.error) or ""
 
     def __iter__(self) -> Iterator[tuple[str, str]]:
         """Yield the pairs that have no work."""
@@ -160,19 +162,35 @@ def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]
     return replace(robot, kind=kind.name, kinematics=kinematics, clearance=clearance, policies=policies)
 
 
-def _expand_task(
-    task: Task, scene: Scene, rules: Mapping[Name, Rule], sorts: Sequence[_Sort], refusals: _Refusals
-) -> None:
+def _works_of(
+    task: Task, scene: Scene, rules: Mapping[Name, Rule], sorts: Sequence[_Sort]
+) -> list[Work | str]:
+    """Return the work of a task for each sort of robots, or why they cannot do it."""
     name = most_specific(task.part.metaclasses, rules)
     if name is None:
         what = task.part.metaclasses[0][1] if task.part.metaclasses else "unknown type"
         raise InfeasibleError(f"task '{task.name}': no installed plug-in has a rule for a {what}")
-    able = np.zeros(len(scene.robots), np.bool_)
-    found = [_work(task, sort.first, scene, rules[name]) for sort in sorts]
+    return [_work(task, sort.first, scene, rules[name]) for sort in sorts]
+
+
+def _stations(
+    found: Mapping[str, Sequence[Work | str]], sorts: Sequence[_Sort], error: float
+) -> Iterator[Relay]:
+    """Yield all relays that robots may be."""
+    for task, works in found.items():
+        for sort, work in zip(sorts, works, strict=True):
+            station = None if isinstance(work, str) else station_of(task, work, sort.first.type, error)
+            if station is not None:
+                yield station
+
+
+def _share(task: str, found: Sequence[Work | str], sorts: Sequence[_Sort], refusals: _Refusals) -> None:
+    """Note which robots can do a task: those that have work for it, all of which their radio reaches."""
+    able = np.zeros(len(refusals.works.sorts), np.bool_)
     for sort, work in zip(sorts, found, strict=True):
-        able[sort.places] = not isinstance(work, str) and sort.reached(work)
-    refusals.of_sorts[task.name] = found
-    refusals.works.add(task.name, [None if isinstance(each, str) else each for each in found], able.tobytes())
+        able[sort.places] = not isinstance(work, str) and sort.reached(work, refusals.radio)
+    refusals.of_sorts[task] = found
+    refusals.works.add(task, [None if isinstance(each, str) else each for each in found], able.tobytes())
 
 
 def _work(task: Task, robot: Robot, scene: Scene, rule: Rule) -> Work | str:
@@ -180,9 +198,12 @@ def _work(task: Task, robot: Robot, scene: Scene, rule: Rule) -> Work | str:
     if missing:
         return missing
     try:
-        return work_of(rule, task, robot, scene)
+        work = work_of(rule, task, robot, scene)
     except InfeasibleError as error:
         return "; ".join(error.reasons)
+    if work.relays and relay_range(robot.type) is None:
+        return "carries no relay: its type has no relayRange"
+    return work
 
 
 def _missing(task: Task, devices: Mapping[str, Device]) -> Iterator[str]:
@@ -305,6 +326,8 @@ def _faults(work: object) -> Iterator[str]:
         return
     if not work.strokes:
         yield "returns a work without strokes"
+    if work.relays and work.divisible:
+        yield "returns a work of a relay that several robots may share"
     for index, stroke in enumerate(work.strokes):
         yield from (f"stroke {index} {fault}" for fault in _stroke_faults(stroke))
 

@@ -252,9 +252,9 @@ CONSTRAINTS = (
     ),
     Constraint(
         "RL013",
-        "Range, data rate, frequency and pressure of a robot are more than 0.",
+        "Ranges, data rate, frequency and pressure of a robot are more than 0.",
         (ROBOT, "Robot"),
-        _positive("communicationRange", "dataRate", "radioFrequency", "maxOperatingPressure"),
+        _positive("communicationRange", "relayRange", "dataRate", "radioFrequency", "maxOperatingPressure"),
         "leave out what is not known",
     ),
     Constraint(

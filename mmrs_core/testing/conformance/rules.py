@@ -57,6 +57,11 @@ class RuleConformance(Conformance):
         assert work.rule == rule.name
         assert work.strokes
 
+    def test_a_relay_is_the_work_of_one_robot(self, rule: Rule) -> None:
+        """Others wait for one robot at one place."""
+        work = self._work(rule)
+        assert not (work.relays and work.divisible)
+
     def test_equal_tasks_make_equal_work(self, rule: Rule) -> None:
         """Plans are the same whenever they are made."""
         assert self._work(rule) == self._work(rule)

@@ -1,4 +1,4 @@
-"""What this plug-in contributes: eight types of task and landmarks: their rules, constraints and looks."""
+"""What this plug-in contributes: nine types of task and landmarks: their rules, constraints and looks."""
 
 from __future__ import annotations
 
@@ -124,6 +124,7 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             initial={"duration": 10.0},
             height="altitude",
         ),
+        MapSymbol(names.RELAY_TASK, "relay", "#6b4f9a", "⌁"),
         MapSymbol(
             names.MEASURE_TASK,
             "measure",

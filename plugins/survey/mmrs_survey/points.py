@@ -1,4 +1,4 @@
-"""Rules for tasks at one point: go there, hold and look, find an object and go up to it."""
+"""Rules for tasks at one point: go there, hold and look or be a relay, find an object and go up to it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mmrs_core.planning.devices import carried, device_for
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights, refuse_unsteady, stand_off
 from mmrs_core.scene import ActionAt, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position, text
-from mmrs_survey.names import APPROACH_TASK, GO_TO_TASK, OBSERVE_TASK
+from mmrs_survey.names import APPROACH_TASK, GO_TO_TASK, OBSERVE_TASK, RELAY_TASK
 
 SLOW = 0.5
 """Share of the cruise speed at which a robot goes to a point slowly."""
@@ -49,6 +49,15 @@ def _place_to_look_from(part: Part, point: Position, robot: Robot, scene: Scene)
         return stand_off(robot, scene, centre, distance, distance)[0]
     refuse_blocked(robot, scene, (centre,), "the observing position")
     return centre
+
+
+def relay_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return the point, at which the robot stays as a relay."""
+    refuse_unsteady(robot)
+    point = position(task.part, "point")
+    refuse_heights(robot, (point,))
+    refuse_blocked(robot, scene, (point,), "the point")
+    return Work((Stroke((point,)),), divisible=False, rule="relay", relays=True)
 
 
 def approach_work(task: Task, robot: Robot, scene: Scene) -> Work:
@@ -100,5 +109,6 @@ def _doing(robot: Robot, action: str, device_id: str, at: float = 0.0) -> Action
 POINT_RULES = (
     Rule("go_to", GO_TO_TASK, go_to_work),
     Rule("observe", OBSERVE_TASK, observe_work),
+    Rule("relay", RELAY_TASK, relay_work),
     Rule("approach", APPROACH_TASK, approach_work, approach_moves),
 )

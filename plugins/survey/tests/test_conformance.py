@@ -32,6 +32,7 @@ TASKS = {
         "deviceId": "camera",
         "actionName": "TakePicture",
     },
+    "relay": {"point": POINT},
     "approach": {
         "point": POINT,
         "object": "buoy",

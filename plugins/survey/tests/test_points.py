@@ -3,7 +3,7 @@ from __future__ import annotations
 from math import dist, inf
 
 import pytest
-from mmrs_survey.points import approach_moves, approach_work, go_to_work, observe_work
+from mmrs_survey.points import approach_moves, approach_work, go_to_work, observe_work, relay_work
 
 from mmrs_core.errors import InfeasibleError
 
@@ -118,3 +118,13 @@ def test_an_object_that_may_be_anywhere_stays_unknown(robot, scene, task):
     (spec,) = approach_moves(there, approach(task), robot(), scene())
     assert spec.object_tolerance is None
     assert spec.look is None
+
+
+def test_a_relay_stays_at_its_point(robot, scene, task):
+    work = relay_work(task("RelayTask", point=POINT), robot(), scene())
+    assert (work.relays, work.divisible, work.strokes[0].points) == (True, False, (POINT,))
+
+
+def test_a_relay_too_near_to_an_obstacle_is_refused(robot, scene, task):
+    with pytest.raises(InfeasibleError, match=r"the point comes 0\.50 m too near to 'block 0'"):
+        relay_work(task("RelayTask", point=POINT), robot(), scene((50.0, 20.0, 9.0, 90.0)))

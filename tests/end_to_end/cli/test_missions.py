@@ -78,7 +78,7 @@ def test_a_demonstration_tells_itself_as_one_object(mmrs, tmp_path):
 def test_examples_are_listed(mmrs):
     out = mmrs("demo", "--list")[1]
     assert [line.split()[0] for line in out.splitlines()] == sorted(
-        (*EXAMPLES, "barn", "lost-float", "pool-course", "two-auv-survey")
+        (*EXAMPLES, "barn", "lost-float", "pool-course", "ridge", "two-auv-survey")
     )
 
 

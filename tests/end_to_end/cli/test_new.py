@@ -38,6 +38,9 @@ SAMPLE = [
     ("InspectObjectTask", "BlueROV2"),
 ]
 
+UNSHIPPED = ("RelayTask",)
+"""What no shipped robot does: none of these machines carries a relay."""
+
 
 def tenth(missions):
     """Mark all missions but every tenth one as thorough."""
@@ -69,7 +72,8 @@ def test_a_new_mission_has_a_safe_plan_or_no_robot_of_it_can_do_the_task(place, 
     able = [TaskWanted(task) for task in tasks if beginning.doers(TaskWanted(task), robots)[0]]
     team = [RobotWanted(f"R{number}", robot) for number, robot in enumerate(robots)]
     if not able:
-        with pytest.raises(UsageError, match=f"no robot of the team can do {tasks[0]}"):
+        words = "carries no relay" if tasks[0] in UNSHIPPED else f"no robot of the team can do {tasks[0]}"
+        with pytest.raises(UsageError, match=words):
             beginning.project(Path("new"), "new", team, [TaskWanted(tasks[0])])
         return
     made = beginning.project(Path("new"), "new", team, able)
@@ -87,9 +91,9 @@ def test_what_no_plan_can_do_safely_is_refused_before_it_is_written(mmrs, tmp_pa
     assert not (tmp_path / "field").exists()
 
 
-def test_every_task_can_be_done_by_a_shipped_robot_and_only_what_dives_surfaces():
+def test_every_task_but_a_relay_can_be_done_by_a_shipped_robot_and_only_what_dives_surfaces():
     able = {task: BEGINNING.doers(TaskWanted(task), TYPES)[0] for task in TASKS}
-    assert [task for task in TASKS if not able[task]] == []
+    assert [task for task in TASKS if not able[task]] == [*UNSHIPPED]
     assert able["SurfaceTask"] == ("BlueROV2",)
 
 

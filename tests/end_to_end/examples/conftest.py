@@ -22,6 +22,7 @@ MISSIONS = (
     "two-auv-survey",
     "lost-float",
     "barn",
+    "ridge",
 )
 ASSUMED = {"Lost float": {"found:lost float": True}}
 """What choices ask that nobody else can answer, by mission."""

@@ -20,6 +20,7 @@ MISSIONS = (
     "two-auv-survey",
     "lost-float",
     "barn",
+    "ridge",
 )
 LANGUAGES = (
     "urn:mmrs:mission:1.0",

@@ -30,6 +30,7 @@ LONGEST = {
     "Carbon dioxide near L'Aquila": 1471.0,
     "Course": 172.0,
     "Dam inspection": 3741.0,
+    "Hot spots behind a ridge": 706.0,
     "Lost float": 205.0,
     "Objects in the pool": 396.0,
     "Outfall": 1210.0,
@@ -223,6 +224,7 @@ def test_samples_cover_every_field_of_the_carbon_dioxide_mission(taken):
         ("two-auv-survey", {"auv"}),
         ("lost-float", {"multicopter", "auv"}),
         ("barn", {"multicopter"}),
+        ("ridge", {"multicopter"}),
     ],
 )
 def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kinds):
