@@ -17,7 +17,7 @@ from mmrs_core.pictures.preview.features import (
     task_pictures,
     zones_of,
 )
-from mmrs_core.pictures.preview.picture import Arm, Bar, Handover, Leg, Picture, RobotPicture
+from mmrs_core.pictures.preview.picture import Arm, Bar, Handover, Leg, Picture, RadioRange, RobotPicture
 from mmrs_core.scene import (
     Await,
     Branch,
@@ -40,6 +40,7 @@ from mmrs_core.scene import (
     Transit,
     all_steps,
 )
+from mmrs_core.scene.relays import relays_of, station_of
 
 _DRAWN = (Launch, Transit, Serve, Recover)
 _KINDS: dict[type[Step], str] = {
@@ -76,8 +77,22 @@ def picture_of_plan(
         handovers=tuple(_handovers(plan)),
         makespan=plan.makespan,
         notes=(*map(str, plan.left_out), *plan.notes),
+        ranges=tuple(_ranges(scene, plan)),
         surface=scene.frame.surface if any(_under_water(scene, robot) for robot in scene.robots) else None,
     )
+
+
+def _ranges(scene: Scene, plan: Plan) -> Iterator[RadioRange]:
+    """Yield the ranges of the context's relays, and of the robots that stay somewhere as relays."""
+    for relay in relays_of(scene.elements):
+        yield RadioRange(f"relay '{relay.name}'", relay.position[:2], relay.range)
+    for each in plan.robots:
+        tasks = dict.fromkeys(step.task for step in each.steps if isinstance(step, Serve))
+        for task in tasks:
+            type, work = scene.robot(each.robot).type, scene.works.get((task, each.robot))
+            station = None if work is None else station_of(task, work, type, scene.position_error)
+            if station is not None:
+                yield RadioRange(f"'{each.robot}' as relay '{task}'", station.position[:2], station.range)
 
 
 def _under_water(scene: Scene, robot: Robot) -> bool:

@@ -31,6 +31,7 @@ _SIGNS = (
     ("kept", "clearance"),
     ("emergency", "emergency area"),
 )
+_RANGE_SIGNS = (("range", "radio range of a relay"),)
 _FLOWN_SIGNS = (
     ("planned", "pale: as planned"),
     ("response", "dotted: off-plan"),
@@ -61,7 +62,8 @@ class Legend:
 def key_of(picture: Picture) -> tuple[KeyEntry, ...]:
     """Return the signs of a map and the symbols that it shows; robots are listed elsewhere on a page."""
     planned, flown = _PLANNED_SIGNS if picture.planned else (), _FLOWN_SIGNS if picture.flown else ()
-    signs = (*planned, *_SIGNS, *flown)
+    ranges = _RANGE_SIGNS if picture.ranges else ()
+    signs = (*planned, *_SIGNS, *ranges, *flown)
     problems = [KeyEntry("problem", "problem, by its number")] if picture.problems else []
     if any(gap.drawn for gap in picture.gaps):
         problems.append(KeyEntry("incomplete", "incomplete"))

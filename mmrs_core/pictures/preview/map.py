@@ -23,6 +23,7 @@ from mmrs_core.pictures.preview.picture import (
     Leg,
     Picture,
     Problem,
+    RadioRange,
     RobotPicture,
     TaskPicture,
     Zone,
@@ -108,6 +109,7 @@ def map_of(picture: Picture, *, standalone: bool = False, only: int | None = Non
         width=projection.width,
         height=projection.height,
         grid=_grid(projection),
+        ranges=[_range(each, projection) for each in shown.ranges],
         emergency=[_zone(zone, projection) for zone in emergency],
         tasks=[*_tasks(shown.tasks, projection)],
         kept=[_kept(zone, projection) for zone in shown.zones if zone.kept],
@@ -123,6 +125,16 @@ def map_of(picture: Picture, *, standalone: bool = False, only: int | None = Non
         stay_radius=STAY,
         pin_radius=PIN,
     )
+
+
+def _range(range: RadioRange, projection: Projection) -> Shape:
+    """Return the circle around a relay within which its radio reaches at its own height."""
+    (x, y), radius = projection.place(range.at), range.metres * projection.scale
+    arcs = "".join(
+        f"a{number(radius)} {number(radius)} 0 1 0 {number(each)} 0" for each in (2 * radius, -2 * radius)
+    )
+    tip = f"{range.relay}: its radio reaches {length(range.metres)}"
+    return Shape("range", f"M{number(x - radius)} {number(y)}{arcs}", tip)
 
 
 def _pins(picture: Picture, projection: Projection) -> list[tuple[float, float, Problem]]:

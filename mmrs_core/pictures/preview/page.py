@@ -23,6 +23,7 @@ _LAYERS = (
     ("clearance", "clearance"),
     ("areas", "areas and obstacles"),
     ("emergency", "emergency areas"),
+    ("ranges", "radio ranges"),
     ("tasks", "tasks"),
     ("elements", "context elements"),
     ("paths", "paths"),
@@ -40,6 +41,7 @@ def page(picture: Picture) -> str:
         *(() if picture.flown else _LAYERS_OF_FLIGHTS),
         *(() if picture.planned else _LAYERS_OF_PLANS),
         *(() if picture.problems else ("problems",)),
+        *(() if picture.ranges else ("ranges",)),
     )
     document = render(
         "preview.html",

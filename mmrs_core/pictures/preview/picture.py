@@ -296,6 +296,15 @@ class Handover:
 
 
 @dataclass(frozen=True, slots=True)
+class RadioRange:
+    """How far a relay reaches, and from where: metres around (east, north)."""
+
+    relay: str
+    at: Point
+    metres: float
+
+
+@dataclass(frozen=True, slots=True)
 class Picture:
     """A whole mission.
 
@@ -309,6 +318,7 @@ class Picture:
         gaps: what the map does not show, or not whole; what is not drawn at all comes first.
         checks: what was found of the safety of its behaviour: (property, words).
         explanation: why its plan is as it is; empty where that was not asked for.
+        ranges: of the relays of the context, and of robots that stay as relays.
     """
 
     title: str
@@ -327,6 +337,7 @@ class Picture:
     gaps: tuple[MapGap, ...] = ()
     checks: Details = ()
     explanation: tuple[ExplanationPart, ...] = ()
+    ranges: tuple[RadioRange, ...] = ()
 
     @property
     def planned(self) -> bool:
