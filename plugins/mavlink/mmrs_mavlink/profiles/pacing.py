@@ -206,8 +206,8 @@ PX4_COPTER = AutopilotTiming(
         descent=1.5,
         corner_radius=2.0,
         acceptance=2.0,
-        settling=1.0,
-        lag=3.4,
+        settling=1.3,
+        lag=3.2,
         lag_within=15.0,
         spread=0.4,
         reporting=5.0,
@@ -222,9 +222,9 @@ PX4_COPTER = AutopilotTiming(
         spread=0.7,
         reporting=10.0,
     ),
-    launch=5.3,
-    recovery=6.6,
-    noticing=1.5,
+    launch=5.8,
+    recovery=7.5,
+    noticing=2.0,
     guiding=1.8,
     landing_rate=0.7,
     landing_height=6.9,
@@ -236,8 +236,8 @@ MPC_LAND_SPEED and MPC_YAWRAUTO_MAX; COM_DISARM_LAND is two of the seconds of re
 takes as long as if it were slow from 6.9 m on. The rest of the recovery is its land detector: it wants the
 estimated climb within LNDMC_Z_VEL_MAX, 0.25 m/s, while that of its simulation wanders by 0.3 to 0.5 m/s on
 the ground. 29 landings of missions from 12 m took 13.9 to 28.2 s, 19.1 s in the mean, with a standard
-deviation of 3.5 s, and eleven earlier ones 20.8 s: so the bounds of launch and landing are wider than those
-of legs.
+deviation of 3.5 s, and 15 of programs 17.1 to 32.3 s, 22.8 s in the mean: so the bounds of launch and landing
+are wider than those of legs.
 
 Leg by leg its set-point goes at the commanded speed from the first to the last metre (``vehicles/px4.py``),
 and its own controllers are linear (``PositionControl.cpp``). So it trails by 1 / MPC_XY_P, 0.95 per second;
