@@ -24,6 +24,7 @@ from mmrs_survey.task_checks import (
     not_positive,
     nowhere_to_measure,
     object_anywhere,
+    relay_bound,
     twice_high,
     where_to_measure_twice,
 )
@@ -202,5 +203,12 @@ CONSTRAINTS = (
         partly_reached,
         "lead the road around the area, or above it, or make it narrower",
         Severity.WARNING,
+    ),
+    Constraint(
+        "SUR024",
+        "A relay task has no dependencies, one robot and no earliest start",
+        MISSION,
+        relay_bound,
+        "remove it: the robot goes when others need it, and stays for as long as they do",
     ),
 )

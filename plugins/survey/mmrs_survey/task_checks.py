@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.features import children, number, text, texts
+from mmrs_core.grounding.features import child, children, number, text, texts
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_survey import names
@@ -43,6 +43,20 @@ def _of(task: Element, figures: dict[tuple[str, str], tuple[str, ...]]) -> Itera
     for metaclass, features in figures.items():
         if is_kind(task, *metaclass):
             yield from features
+
+
+def relay_bound(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield what a mission asks of the tasks of relays that these, which last as others need, cannot keep."""
+    relays = [task for task in children(mission, "tasks") if is_kind(task, *names.RELAY_TASK)]
+    for dependency in children(mission, "taskDependencies") if relays else ():
+        for task in relays:
+            if task in (child(dependency, "from"), child(dependency, "to")):
+                yield Finding(dependency, f"task '{label_of(task)}' is a relay, it cannot have dependencies")
+    for task in relays:
+        if (number(task, "robotsWanted") or 1) > 1:
+            yield Finding(task, f"task '{label_of(task)}' is a relay, but wants several robots")
+        if number(task, "earliestStart"):
+            yield Finding(task, f"task '{label_of(task)}' is a relay, but has an earliest start")
 
 
 def twice_high(task: Element, models: ModelSet) -> Iterator[Finding]:

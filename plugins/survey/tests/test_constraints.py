@@ -73,6 +73,14 @@ def probe(registry):
     return robot(registry, device(registry, "probe", action="Sample"))
 
 
+def relaying(registry, *, after=False, **features):
+    """Return a mission with a relay, and a task that comes after it or does not depend on it."""
+    relay = registry.create(SURVEY, "RelayTask", name="ridge", **features)
+    rest = [registry.create(SURVEY, "GoToTask", name=name) for name in ("first", "second")]
+    edge = mml.TaskDependency(from_=relay if after else rest[0], to=rest[1])
+    return [mml.Mission(name="m", tasks=[relay, *rest], taskDependencies=[edge])]
+
+
 def accepting(registry, *unknowns):
     made = task(registry, "ApproachTask", object="buoy")
     return mml.Mission(name="m", tasks=[made], acceptedUnknowns=list(unknowns))
@@ -170,6 +178,7 @@ CASES = {
         lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (99, 0)), spacing=5.0, altitude=70.0)),
     ),
     "SUR023": Case(lambda r: beside_a_tower(r, road(r, -4)), lambda r: beside_a_tower(r, road(r, -15))),
+    "SUR024": Case(lambda r: relaying(r, after=True), relaying),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
@@ -301,3 +310,16 @@ def test_where_no_robot_can_be_is_told_as_planning_tells_it(code, made, words, r
 
 def test_a_road_of_one_pass_is_judged_as_the_line_that_it_is(registry):
     assert breaches(BY_CODE["SUR023"], beside_a_tower(registry, road(registry, 0, width=10.0))) == []
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda r: relaying(r, after=True), "task 'ridge' is a relay, it cannot have dependencies"),
+        (lambda r: relaying(r, robotsWanted=2), "task 'ridge' is a relay, but wants several robots"),
+        (lambda r: relaying(r, earliestStart=5.0), "task 'ridge' is a relay, but has an earliest start"),
+    ],
+)
+def test_a_relay_is_bound_by_nothing_but_what_others_need(made, words, registry):
+    (message,) = breaches(BY_CODE["SUR024"], made(registry))
+    assert message == words
