@@ -49,11 +49,13 @@ def faults(flight, simulated):
         ("copter: plan in AUTO", "Alba", 0),
         ("rover: plan in AUTO", "Badger", 0),
         ("sub: plan in AUTO", "Nereid", 1),
+        ("sub: up and down in AUTO", "Nereid", 0),
         ("PX4: plan in AUTO", "Alba", 0),
+        ("PX4: ten minutes in AUTO", "Alba", 0),
     ],
 )
 def test_a_simulated_mission_takes_what_is_planned(name, robot, others, tmp_path):
-    """`others` are the legs that take others' times: a submarine dives as fast as it can in a mission."""
+    """`others` are the legs that take other times: the last one of the submarine is short, and leads up."""
     next(flight for flight in FLIGHTS if flight.name == name).models(tmp_path / "models")
     simulate_mission(tmp_path / "models", robot)
     (found,) = compared(tmp_path / "models")

@@ -22,9 +22,11 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.scene import Device, Kinematics, Name, Position, Robot, Scene
+from mmrs_mavlink.limits import Limit
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
 from mmrs_mavlink.plugin.plans.items import PlanItem, Row, rows_of
+from mmrs_mavlink.plugin.plans.surroundings import missions_of
 
 ACCEPTANCE = {"rover-arcs-acceptance-1": 1.0}
 """Metres at which places counted as reached on flights for which ``--acceptance`` was given."""
@@ -136,6 +138,11 @@ class Modelled:
     def rows(self) -> tuple[Row, ...]:
         """Return the items of the robot's mission as files hold them."""
         return rows_of(context_of(self.robot, self._target(uploaded=False)), self.items())
+
+    def limits(self) -> tuple[Limit, ...]:
+        """Return what the vehicle must be set to before the robot's mission."""
+        missions = missions_of(self._target(uploaded=True))
+        return next(each.limits for each in missions if each.context.robot.id == self.robot.id)
 
     def estimates(self, *, uploaded: bool) -> dict[str, Estimate]:
         """Return how long each move takes but charging, which an operator ends; `uploaded`: as a mission."""

@@ -62,8 +62,12 @@ def simulate_mission(folder: Path, robot: str) -> None:
     """Have a robot of the models in a folder fly all of its moves as a mission, and keep its track there."""
     session, loaded = opened(folder)
     program = next(each for each in loaded.program.robots if each.id == robot)
-    rows = Modelled(session, loaded, program).rows()
+    modelled = Modelled(session, loaded, program)
+    rows = modelled.rows()
     pilot = SimulatedAutopilot(members_of(CliSettings(), folder)[robot])
+    for limit in modelled.limits():
+        if limit.name in pilot.parameters and not limit.holds(pilot.parameters[limit.name]):
+            pilot.parameters[limit.name] = limit.value
     track: list[Fix] = []
     record = _recorder(pilot, track)
     advance(pilot, READY)
