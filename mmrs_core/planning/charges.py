@@ -50,7 +50,12 @@ def short_of_charge(plan: Plan, pilots: Mapping[str, Pilot]) -> set[str]:
 
 def _of_all(plan: Plan, pilots: Mapping[str, Pilot]) -> dict[str, list[tuple[float, float]]]:
     """Return, by robot and sortie, the seconds used and those that a diversion from its end takes longer."""
-    timelines = timelines_of(plan, {name: pilot.robot for name, pilot in pilots.items()}, hasty=True)
+
+    def longest(robot: str, step: Step) -> float:
+        return paced((step.stroke,), pilots[robot], 1)[0][1] if isinstance(step, Serve) else 0.0
+
+    robots = {name: pilot.robot for name, pilot in pilots.items()}
+    timelines = timelines_of(plan, robots, hasty=True, longest=longest)
     given = {
         step.signal: timelines[each.robot].moments[i + 1][1]
         for each in plan.robots
@@ -82,9 +87,6 @@ def _uses(
             longest = 0.0 if step.until is None else held + notices
             release = max((given[signal] for signal in step.signals), default=0.0)
             used = waited(used + longest, before, since, early + held, release)
-        elif isinstance(step, Serve):
-            ((_, seconds),) = paced((step.stroke,), pilot, 1)
-            used += seconds
         else:
             used += latest - late
         here = _end_of(step, here)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from itertools import permutations
 from typing import TypeAlias
 
@@ -84,7 +84,7 @@ class Mixture:
         return self._rests[sort, runs]
 
     def _made(self, sort: int, runs: Runs) -> _Rest:
-        known = self._remainders = self._remainders or Remainders([each.work for each in self.sorts])
+        known = self._remainders = self._remainders or _remainders_of(tuple(each.work for each in self.sorts))
         mine, parts = self.sorts[sort], known.parts[sort]
         left = tuple(sorted(known.left(sort, [self._turn(runs[:i], *run) for i, run in enumerate(runs)])))
         if len(left) == len(parts):
@@ -112,6 +112,12 @@ class Mixture:
                     made = None
             self._materials[key] = made
         return self._materials[key]
+
+
+@lru_cache(maxsize=4)
+def _remainders_of(works: tuple[Work, ...]) -> Remainders:
+    """Return the remainders of works; the same ones for teams that differ in something else."""
+    return Remainders(works)
 
 
 @cache

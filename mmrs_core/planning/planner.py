@@ -13,7 +13,6 @@ from typing import Protocol
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.bounds import least_makespan
-from mmrs_core.planning.charges import short_of_charge
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
@@ -37,7 +36,6 @@ from mmrs_core.planning.separation import (
 )
 from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.scene import Plan, Scene
-from mmrs_runtime.policies import RETURN, Policy
 
 
 class _Find(Protocol):
@@ -68,8 +66,6 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         return plan_with_relays(scene, lambda part, its: plan(part, seed=seed, effort=its), effort)
     jobs = jobs_of(scene)
     team = Team(scene)
-    if (found := _leaving_enough(team, seed, effort)) is not None:
-        return found
     if short := [*_with_remedies(team, jobs), *_shared_choices(scene, jobs)]:
         able = [*_alone([job for job in jobs if all(map(team.able, job.tasks()))])]
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
@@ -98,27 +94,6 @@ def _alone(jobs: Sequence[Job]) -> Iterator[Job]:
     """Yield jobs that wait for none but each other."""
     names = {job.name for job in jobs}
     yield from (replace(job, after=tuple(each for each in job.after if each in names)) for job in jobs)
-
-
-def _leaving_enough(team: Team, seed: int, effort: Effort | None) -> Plan | None:
-    """Return a plan made without a thought of emergency areas that leaves enough to reach them; None: none.
-
-    What must be kept for that hardly ever binds where robots return, and would only narrow the search.
-    """
-    diverting = {name: each.diversions for name, each in team.pilots.items() if each.diversions is not None}
-    if not diverting or not all(team.scene.robot(name).return_home for name in diverting):
-        return None
-    events = dict.fromkeys(event for each in diverting.values() for event in each.events)
-    policies = (*(Policy(event, RETURN) for event in events), *team.scene.policies)
-    trial = None if effort is None else effort.trial()
-    with suppress(InfeasibleError):
-        found = plan(replace(team.scene, policies=policies), seed=seed, effort=trial)
-        short = short_of_charge(found, team.pilots)
-        if not short & diverting.keys():
-            if effort is not None and trial is not None:
-                effort.stopped = trial.stopped
-            return found
-    return None
 
 
 def _cost(made: Plan) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from mmrs_core.planning.materials import shortages
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.team import Team, teams_to_try
+from mmrs_core.planning.travel import Spaces
 from mmrs_core.scene import Area, AreaUse, Corridor, Robot, Scene
 from mmrs_runtime.policies import RETURN, Policy
 
@@ -104,7 +105,7 @@ def _lifetimes(
         def changed(robot: Robot) -> Robot:
             return _lasting(change(robot), factor * needed[robot.name] / _lifetime(scene, robot))
 
-        return _plannable(_with(scene, [*needed], changed), jobs)
+        return _plannable(_with(scene, [*needed], changed), jobs, team.spaces)
 
     if plannable(1.0):
         return needed, ""
@@ -205,7 +206,7 @@ def for_diversions(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
 
     def plannable(away: float) -> bool:
         landings = [_landing(team, name, away) for name in kept]
-        return _plannable(replace(scene, areas=(*scene.areas, *landings)), jobs)
+        return _plannable(replace(scene, areas=(*scene.areas, *landings)), jobs, team.spaces)
 
     if plannable(0.0):
         pilots = [team.pilots[name] for name in kept]
@@ -214,7 +215,7 @@ def for_diversions(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
         yield f"an emergency area within {metres} m of each home"
     events = dict.fromkeys(event for each in kept.values() for event in each.events)
     returning = tuple(Policy(event, RETURN) for event in events)
-    if _plannable(replace(scene, policies=(*returning, *scene.policies)), jobs):
+    if _plannable(replace(scene, policies=(*returning, *scene.policies)), jobs, team.spaces):
         yield f"RETURN as the response to {' and '.join(events)}"
 
 
@@ -258,13 +259,17 @@ def for_all_charges(team: Team, jobs: Sequence[Job], job: Job) -> Iterator[str]:
     if len(jobs) * len(scene.robots) > _MOST_PAIRS or not able:
         return
     lifetimes = {_lifetime(scene, scene.robot(name)) for name in able}
-    enough = _least(lambda each: _plannable(_with(scene, able, lambda robot: _lasting(robot, each)), jobs))
+
+    def plannable(change: Callable[[Robot], Robot]) -> bool:
+        return _plannable(_with(scene, able, change), jobs, team.spaces)
+
+    enough = _least(lambda each: plannable(lambda robot: _lasting(robot, each)))
     if max(lifetimes) < inf and enough is not None:
         (lifetime, *others) = lifetimes
         exact = f"a lifetime of {ceil(lifetime * enough)} s (now {lifetime:.0f} s)"
         yield f"lifetimes {ceil(100.0 * (enough - 1.0))} % longer" if others else exact
     stuck = any(_recharge(scene.robot(name)) is None for name in able)
-    if stuck and _plannable(_with(scene, able, _rechargeable), jobs):
+    if stuck and plannable(_rechargeable):
         yield "a rechargeTime for the batteries"
     if job.choice is None and team.tasks[job.name].wanted is not None:
         for count in range(1, team.sharers(job.name) + 1):
@@ -312,13 +317,19 @@ def _fits(
     return alone.forwards(task, robot.name) is not None and not alone.too_long(task)
 
 
-def _plannable(scene: Scene, jobs: Sequence[Job]) -> bool:
-    """Return whether even the decisions with which a search begins lead to a schedule."""
+def _plannable(scene: Scene, jobs: Sequence[Job], spaces: Spaces | None = None) -> bool:
+    """Return whether even the decisions with which a search begins lead to a schedule.
+
+    Args:
+        scene: changed.
+        jobs: of it.
+        spaces: of a scene with the same obstacles, whose robots differ in charges only; None: new ones.
+    """
     order = tuple(job.name for job in jobs)
     starts = (Decisions(order), Decisions(order, {name: 1 for name in order}))
     return any(
         isinstance(schedule(team, jobs, each), Schedule)
-        for team in teams_to_try(Team(scene))
+        for team in teams_to_try(Team(scene, spaces=spaces))
         for each in starts
     )
 

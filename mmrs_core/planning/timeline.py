@@ -9,7 +9,7 @@ until after the last.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from itertools import pairwise
@@ -92,16 +92,23 @@ class Timeline:
     moments: tuple[tuple[float, float], ...]
 
 
-def timelines_of(plan: Plan, robots: Mapping[str, Robot], *, hasty: bool = False) -> dict[str, Timeline]:
+def timelines_of(
+    plan: Plan,
+    robots: Mapping[str, Robot],
+    *,
+    hasty: bool = False,
+    longest: Callable[[str, Step], float] = lambda robot, step: 0.0,
+) -> dict[str, Timeline]:
     """Return the timeline of every robot, all arms of choices included; robots without steps stay at home.
 
     Args:
         plan: of all robots.
         robots: by name.
         hasty: whether charging may end before its declared time.
+        longest: returns the seconds that a robot's step takes at most, if that may be more than by its legs.
     """
     walks = {
-        each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot]), hasty)
+        each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot]), hasty, longest)
         for each in plan.robots
     }
     left = {each.robot: list(each.steps) for each in plan.robots}
@@ -121,7 +128,7 @@ class _Walk:
     """One robot in its steps, as early and as late as it may be.
 
     Attributes:
-        hasty: see `timelines_of`.
+        hasty, longest: see `timelines_of`.
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet. off: whether its motors are, as at home.
@@ -132,6 +139,7 @@ class _Walk:
     robot: Robot
     kinematics: Kinematics
     hasty: bool
+    longest: Callable[[str, Step], float]
     rides: list[Ride] = field(default_factory=list)
     now: float = 0.0
     by: float = 0.0
@@ -153,7 +161,9 @@ class _Walk:
     def begin(self, step: Step, given: dict[str, _Given]) -> None:
         self.stops.append(self._standing(len(self.stops)))
         self.moments.append((self.now, self.by))
+        latest = self.by + self.longest(self.robot.name, step)
         self.add(step, given)
+        self.by = max(self.by, latest)
         self._learn(step.signals if isinstance(step, Await) else (), given)
 
     def ended(self) -> Timeline:

@@ -135,12 +135,15 @@ class Travel:
         )
         aloft = transit_altitude if self.kinematics.launches else None
         self._altitude = None if aloft is None else self._within(aloft)
-        self._leaving: dict[Position, Route | str] = {}
-        self._returning: dict[Position, Route | str] = {}
-        key = self.kinematics, self._altitude, fluid, self.uploading is None
+        tireless = replace(self.kinematics, endurance=inf, energy=inf, recharge=None)
+        key = tireless, self._altitude, fluid, self.uploading is None
         self._between: dict[tuple[Position, Position], Route | str]
         self._hops: dict[tuple[Position, Position], Route]
         self._between, self._hops = space.remembered.setdefault(key, ({}, {}))
+        self._leaving: dict[Position, Route | str]
+        self._returning: dict[Position, Route | str]
+        own = (*key, robot.home, *map(id, corridors))
+        self._leaving, self._returning = space.remembered.setdefault(own, ({}, {}))
         self._bounds: dict[float | None, tuple[Rates, Rates, Rates]] = {}
         self._uploaded: dict[float | None, Rates] = {}
 
