@@ -20,13 +20,13 @@ def check(seed):
     return True
 
 
-@pytest.mark.parametrize("seed", [1, 3, 4, 6, 8, 9, *range(20, 25)])
+@pytest.mark.parametrize("seed", [1, 3, 4, 6, 9, *range(20, 24)])
 def test_a_random_plan_can_be_carried_out(seed):
     assert check(seed)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", [0, 2, 5, 7, *range(40, 440)])
+@pytest.mark.parametrize("seed", [0, 2, 5, 7, 8, 24, *range(40, 440)])
 def test_many_random_plans_can_be_carried_out(seed):
     check(seed)
 
