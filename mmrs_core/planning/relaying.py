@@ -203,6 +203,8 @@ def _made(scene: Scene, crew: Sequence[Stay], planned: Planned, effort: Effort |
             raise refusals[0]
     others = _without(scene, crew)
     names = ", ".join(f"'{stay.robot.name}' at '{stay.task}'" for stay in crew)
+    if others.tasks and not others.robots:
+        raise InfeasibleError(f"no plan: with {names} as relay, no robot is left for the other tasks")
     try:
         rest = planned(others, effort)
     except InfeasibleError as error:

@@ -20,6 +20,8 @@ SIZE = 400.0
 GAP = 30.0
 RADIO, FAR = 300.0, 5000.0
 """Metres that radios reach in missions with relays, and in others."""
+HOVERING = 500.0
+"""Metres that they reach in missions in which robots are relays, which others then need for most tasks."""
 DETOUR = 1.6
 
 
@@ -53,6 +55,7 @@ class Maker:
         self.inside: list[tuple[float, float, float]] = []
         self.work: list[tuple[float, float, float]] = []
         self.relayed = Random(f"relays {seed}").random() < 0.3
+        self.hovering = not (self.solvable or self.relayed) and Random(f"hovering {seed}").random() < 0.4
 
     def make(self, namespace: str, metaclass: str, /, **features):
         return self.registry.create(namespace, metaclass, **features)
@@ -69,6 +72,7 @@ class Maker:
         robots = self._robots(random.randint(1, 10))
         tasks = self._tasks(random.randint(1, 5))
         dependencies = self._dependencies(tasks)
+        tasks += self._hovering() if self.hovering else []
         context = self._context()
         types = {t.name: t for t in self._types()}
         origin = self.make(
@@ -272,6 +276,14 @@ class Maker:
                     name = f"relay {row}.{k}"
                     yield self.make(CONTEXT, "Relay", name=name, position=position, range=far)
 
+    def _hovering(self):
+        """Yield tasks of robots that are relays: one in the middle, and perhaps another one beyond it."""
+        random = Random(f"hovering in {self.seed}")
+        for k in range(random.choice([1, 1, 2])):
+            place = random.uniform(-60.0, 160.0), -SIZE - 40.0 + 420.0 * (k + 1) - random.uniform(0.0, 60.0)
+            height = random.choice([30.0, 60.0, 90.0])
+            yield self.make(SURVEY, "RelayTask", name=f"hover {k}", point=self.point(*place, height))
+
     def _wind(self):
         return self.make(
             CONTEXT,
@@ -298,7 +310,8 @@ class Maker:
                 "Drone",
                 name=name,
                 gps=True,
-                communicationRange=RADIO if self.relayed else FAR,
+                communicationRange=RADIO if self.relayed else HOVERING if self.hovering else FAR,
+                relayRange=HOVERING if self.hovering else None,
                 onBoardObstacleAvoidance=False,
                 launchType="VTOL",
                 maxAltitude=120.0,

@@ -9,7 +9,7 @@ from math import dist, inf
 import numpy as np
 import shapely
 
-from mission_generator.missions import CONTEXT, DRONE, sample
+from mission_generator.missions import CONTEXT, DRONE, SURVEY, sample
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import BEHAVIOUR
@@ -23,6 +23,9 @@ GRID = 1e-6
 NEAR = 1e-3
 """Metres by which a track may come nearer than allowed: the rounding of coordinates in a file."""
 
+
+THERE = 0.1
+"""Metres from where it is to stay within which a robot counts as a relay."""
 
 SHARES = (0.0, 0.25, 0.5, 0.75)
 """Of each stretch of a track, the places that are looked at."""
@@ -91,7 +94,7 @@ def _carry_out(folder, contributions, outcome):
         outcome.complaints.append(f"replay: ends with {replayed.outcome}; {run.ending}")
     outcome.makespan = run.ending.time
     outcome.complaints += list(_intrusions(scene, run.tracks))
-    outcome.complaints += list(_silences(scene, run.tracks))
+    outcome.complaints += list(_silences(scene, run.tracks, program))
     outcome.complaints += list(_overdrafts(scene, run.tracks))
     outcome.complaints += list(_repetitions(scene, program))
     outcome.complaints += list(_approaches(scene, run.tracks))
@@ -156,26 +159,56 @@ def _approaches(scene, tracks):
             yield f"'{one}' and '{two}' come to {nearest:.3f} m of each other, not {least:g} m"
 
 
-def _silences(scene, tracks):
-    """Yield where a robot is out of range of its home and of all relays that a chain leads to."""
+def _silences(scene, tracks, program):
+    """Yield where a robot is out of range of its home and of all relays that a chain leads to at that time.
+
+    Robots that are relays count as long as they are at their places.
+    """
     relays = [each.attributes for each in scene.elements if each.is_a((CONTEXT, "Relay"))]
+    still = [(each["position"], each["range"]) for each in relays]
+    hovering = [*_hovering(scene, program)]
     for name, track in tracks.items():
         robot = scene.robot(name)
         reach = robot.type.part.attributes["communicationRange"]
-        balls, left = [(robot.home, reach)], [(each["position"], each["range"]) for each in relays]
-        for at, range in balls:
-            near = [each for each in left if dist(each[0], at) <= min(each[1], range)]
-            balls += near
-            left = [each for each in left if each not in near]
-        ends = np.array([(sample.east, sample.north, sample.up) for sample in track])
-        places = np.concatenate([ends + share * (np.roll(ends, -1, axis=0) - ends) for share in SHARES])
-        places = places.reshape(len(SHARES), -1, 3)[:, :-1].reshape(-1, 3)
-        beyond = np.min(
-            [np.linalg.norm(places - at, axis=1) - min(range, reach) for at, range in balls], axis=0
-        )
-        if beyond.max(initial=-inf) > NEAR:
-            at = places[beyond.argmax()].round(1).tolist()
-            yield f"'{name}' is {beyond.max():.3f} m out of range at {at}"
+        rows = np.array([(sample.time, sample.east, sample.north, sample.up) for sample in track])
+        rows = np.concatenate([rows + share * (np.roll(rows, -1, axis=0) - rows) for share in SHARES])
+        rows = rows.reshape(len(SHARES), -1, 4)[:, :-1].reshape(-1, 4)
+        there = [_is_there(tracks[other], rows[:, 0], at) & (other != name) for other, at, _ in hovering]
+        known = np.array(there, dtype=bool).reshape(len(hovering), len(rows)).T
+        for held in {tuple(row) for row in known.tolist()}:
+            others = [(at, range) for (_, at, range), is_held in zip(hovering, held, strict=True) if is_held]
+            places = rows[(known == held).all(axis=1), 1:]
+            balls = _chained(robot.home, reach, [*still, *others])
+            beyond = np.min(
+                [np.linalg.norm(places - at, axis=1) - min(range, reach) for at, range in balls], axis=0
+            )
+            if beyond.max(initial=-inf) > NEAR:
+                at = places[beyond.argmax()].round(1).tolist()
+                yield f"'{name}' is {beyond.max():.3f} m out of range at {at}"
+
+
+def _hovering(scene, program):
+    """Yield (robot, place, range) of each that is a relay."""
+    for task in scene.tasks:
+        if task.part.is_a((SURVEY, "RelayTask")):
+            (robot,) = {r.id for r in program.robots if any(move.task == task.name for move in r.moves)}
+            type = scene.robot(robot).type.part
+            yield robot, task.part.attributes["point"], type.attributes["relayRange"]
+
+
+def _is_there(track, times, at):
+    rows = np.array([(sample.time, sample.east, sample.north, sample.up) for sample in track])
+    places = np.stack([np.interp(times, rows[:, 0], rows[:, axis]) for axis in (1, 2, 3)], axis=1)
+    return np.linalg.norm(places - at, axis=1) < THERE
+
+
+def _chained(home, reach, left):
+    balls = [(home, reach)]
+    for at, range in balls:
+        near = [each for each in left if dist(each[0], at) <= min(each[1], range)]
+        balls += near
+        left = [each for each in left if each not in near]
+    return balls
 
 
 def _overdrafts(scene, tracks):

@@ -207,6 +207,13 @@ def test_two_relays_want_two_robots():
         planned(works)
 
 
+def test_a_team_of_relays_only_is_refused():
+    with pytest.raises(
+        InfeasibleError, match="with 'c' at 'ridge' as relay, no robot is left for the other tasks"
+    ):
+        planned({"far": visit(FAR), "ridge": staying(RIDGE)}, [TEAM[2]])
+
+
 def test_the_lower_bound_holds_and_the_same_scene_gives_the_same_plan():
     found = planned()
     assert 0.0 < found.lower_bound <= found.makespan
