@@ -28,12 +28,11 @@ from mmrs_core.cli.conversion import (
 )
 from mmrs_core.cli.output import counted, report, say, say_file, say_json, tell
 from mmrs_core.cli.protection import files_of, refuse_inputs
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.element import Unknown
-from mmrs_core.languages.writing import replace_file
+from mmrs_core.languages.writing import replace_file, replace_files
 
 if TYPE_CHECKING:
     from mmrs_core.languages.foreign import ForeignModel

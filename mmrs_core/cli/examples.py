@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.writing import replace_files
 from mmrs_core.resources import shipped
 
 DEMO_FILE = "demo.toml"

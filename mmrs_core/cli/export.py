@@ -16,10 +16,10 @@ from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.parameters import Assume, Context, Robots, robot_files
 from mmrs_core.cli.plan import folder_of
 from mmrs_core.cli.protection import refuse_inputs
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UsageError
+from mmrs_core.languages.writing import replace_files
 from mmrs_core.pictures.layers.layer import Layer
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import typer
 from mmrs_core.analysis.fixes.repair import Diagnose, FileChange, Proposal, Repair, Repairer
 from mmrs_core.cli.output import counted, say, tell
 from mmrs_core.cli.protection import ProtectedError
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.writing import replace_files
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions

@@ -12,11 +12,11 @@ import typer
 
 from mmrs_core.cli.output import counted, report, say, say_json, table, tell
 from mmrs_core.cli.protection import ProtectedError
-from mmrs_core.cli.replacing import make_folder, replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import InvalidModelError, MmrsError, UsageError
+from mmrs_core.languages.writing import make_folder, replace_files
 from mmrs_core.projects import ALTITUDE
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.output import counted, say, say_json, table
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.stubs.write import write_stubs
@@ -19,6 +18,7 @@ from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.evolution.versions import pairs_of, version_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.metamodels.gathering import registry_of_files
+from mmrs_core.languages.writing import replace_files
 from mmrs_core.pictures.pages.languages import pages
 
 app = typer.Typer(

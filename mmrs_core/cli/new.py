@@ -13,11 +13,11 @@ import typer
 from mmrs_core.cli.asking import ask, is_terminal
 from mmrs_core.cli.output import counted, progress, report, say, say_json, table, tell
 from mmrs_core.cli.protection import ProtectedError
-from mmrs_core.cli.replacing import make_folder
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import InvalidModelError, UsageError
+from mmrs_core.languages.writing import make_folder
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions

@@ -25,12 +25,12 @@ from mmrs_core.cli.parameters import (
 )
 from mmrs_core.cli.plan import folder_of
 from mmrs_core.cli.protection import files_of, refuse_inputs
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.verdict_words import verdict_rows
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InfeasibleError, InvalidModelError
+from mmrs_core.languages.writing import replace_files
 from mmrs_core.pictures.explanations import sections_of
 
 if TYPE_CHECKING:

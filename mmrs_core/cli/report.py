@@ -14,9 +14,9 @@ from mmrs_core.cli.behaviours import Loaded, load_behaviour
 from mmrs_core.cli.output import progress, say, say_json, tell
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.languages.writing import replace_files
 
 if TYPE_CHECKING:
     from mmrs_core.pictures.report.assembly import Given

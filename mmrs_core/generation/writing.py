@@ -7,16 +7,14 @@ written. Files that a former run generated and this one does not are removed if 
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from hashlib import sha256
 from pathlib import Path
-from tempfile import mkstemp
 
 from mmrs_core.contributions.targets import GeneratedFile
 from mmrs_core.errors import InternalError, MmrsError
 from mmrs_core.generation.manifest import Recorded, read_manifest
-from mmrs_core.resources import named, new_folders
+from mmrs_core.languages.writing import replace_files
 
 
 def write(files: Iterable[GeneratedFile], directory: Path, *, force: bool = False) -> tuple[Path, ...]:
@@ -43,7 +41,7 @@ def write(files: Iterable[GeneratedFile], directory: Path, *, force: bool = Fals
         _refuse_strangers(written[:-1], directory, known)
     for file in written:
         _check_inside(directory, file.path)
-    _put(written, directory)
+    replace_files({directory / file.path: file.content for file in written})
     _remove_stale({file.path for file in files}, directory, known)
     return tuple(directory / file.path for file in written)
 
@@ -69,33 +67,6 @@ def _untouched(directory: Path, entry: Recorded | None) -> bool:
 def _check_inside(directory: Path, path: str) -> None:
     if not (directory / path).resolve().is_relative_to(directory.resolve()):
         raise InternalError(f"{path}: leads out of {directory}")
-
-
-def _put(files: Sequence[GeneratedFile], directory: Path) -> None:
-    staged: list[tuple[Path, Path]] = []
-    with new_folders() as make:
-        try:
-            for file in files:
-                staged.append((_staged(file, directory, make), directory / file.path))
-            for temporary, final in staged:
-                temporary.replace(final)
-        finally:
-            for temporary, _ in staged:
-                temporary.unlink(missing_ok=True)
-
-
-def _staged(file: GeneratedFile, directory: Path, make: Callable[[Path], None]) -> Path:
-    folder = (directory / file.path).parent
-    make(folder)
-    handle, name = mkstemp(prefix=".mmrs-", dir=folder)
-    try:
-        with named(directory / file.path), os.fdopen(handle, "wb") as stream:
-            stream.write(file.content)
-        Path(name).chmod(0o644)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
-    return Path(name)
 
 
 def _remove_stale(current: set[str], directory: Path, known: dict[str, Recorded]) -> None:

@@ -173,7 +173,7 @@ def test_a_disk_that_is_full_leaves_no_project(mmrs, tmp_path, monkeypatch):
             raise OSError(28, "No space left on device", str(file))
         return part_of(file, text)
 
-    monkeypatch.setattr("mmrs_core.cli.replacing.part_of", full)
+    monkeypatch.setattr("mmrs_core.languages.writing.part_of", full)
     code, _, err = mmrs("new", tmp_path / "field", "--empty")
     assert code == 3
     assert "no space left" in err

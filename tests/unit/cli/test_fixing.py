@@ -65,16 +65,16 @@ def test_all_files_are_as_they_were_if_one_cannot_be_written(tmp_path, monkeypat
     one.write_bytes(b"a")
     other.write_bytes(b"b")
     repair = repair_of(one, other)
-    from mmrs_core.cli import replacing
+    from mmrs_core.languages import writing
 
-    part_of = replacing.part_of
+    part_of = writing.part_of
 
     def full(file, text):
         if file == other:
             raise OSError(28, "no space left on device", str(file))
         return part_of(file, text)
 
-    monkeypatch.setattr(replacing, "part_of", full)
+    monkeypatch.setattr(writing, "part_of", full)
     with pytest.raises(OSError, match="no space left"):
         write(repair)
     assert (one.read_bytes(), other.read_bytes()) == (b"a", b"b")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.cli import run
-from mmrs_core.cli.replacing import make_folder, replace_files
+from mmrs_core.languages.writing import make_folder, replace_files
 
 
 def all_in(folder):

@@ -17,9 +17,9 @@ import typer
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say
 from mmrs_core.cli.parameters import Duration
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.writing import replace_files
 from mmrs_runtime.records.steps import SUFFIX, log_name
 
 FIRST_PORT = 29_600
