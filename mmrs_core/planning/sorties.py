@@ -350,7 +350,3 @@ def _remembered(
 
 def _seconds(route: Route | None) -> float:
     return inf if route is None else route.seconds
-
-
-def _longest(route: Route | None) -> float:
-    return inf if route is None else route.longest

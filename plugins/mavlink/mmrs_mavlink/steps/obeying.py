@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mmrs_runtime.controllers.return_paths import Track
-from mmrs_runtime.policies import CAME_DOWN_AWAY, HOLD, RETURN
+from mmrs_runtime.policies import HOLD, RETURN
 
 from ..program import Robot
 from ..vehicles.footing import aside, misplaced
@@ -53,10 +53,3 @@ def away(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
 def astray(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
     """Return that a vehicle on the ground cannot take off where it is, and where to carry it; or nothing."""
     return misplaced(robot.home, vehicle.start, vehicle.state().place, tolerance)
-
-
-def came_down(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
-    """Return where a vehicle came down for its battery, and where it is to be carried first, if anywhere."""
-    if carry := astray(robot, vehicle, tolerance):
-        return f"came down for its battery, but {carry}"
-    return CAME_DOWN_AWAY if away(robot, vehicle, tolerance) else "came home for its battery"

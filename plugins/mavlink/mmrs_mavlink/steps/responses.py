@@ -48,16 +48,10 @@ def alone(policy: Policy, robot: Robot) -> Policy:
     return replace(policy, response=RETURN) if blocked else policy
 
 
-def response_to(event: str, robot: Robot, first: Sequence[Policy] = ()) -> str:
-    """Return a robot's response to an event, or the nearest one that is possible then.
+def instead_of(response: str, event: str, robot: Robot) -> str:
+    """Return what a robot does about an event instead of a response that is impossible then; or nothing.
 
     Without a position it can neither return nor, if it flies, hold position: it lands.
     """
-    response = policy_for(event, robot, first).response
-    return instead_of(response, event, robot) or response
-
-
-def instead_of(response: str, event: str, robot: Robot) -> str:
-    """Return what a robot does about an event instead of a response that is impossible then; or nothing."""
     impossible = event == POSITION_LOST and response in NEEDS_POSITION
     return robot.profile.without_position if impossible else ""
