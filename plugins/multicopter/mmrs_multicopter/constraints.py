@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mmrs_core.analysis.constraints.ranges import Range, positive
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import child, children, number, text
@@ -15,17 +16,10 @@ from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, MULTICOPTER, 
 MISSION = ("urn:mmrs:mission:1.0", "Mission")
 TEAM_MEMBER = ("urn:mmrs:mission:1.0", "Robot")
 
-FEWEST_PROPELLERS = 3
 SMALLEST_PROPELLER = 20.0
 """Millimetres under which a propeller's size was most likely given in inches or metres."""
 FASTEST = 40.0
 """Metres per second, 144 km/h; beyond it the unit is suspect."""
-
-
-def _altitude_not_positive(drone: Element, models: ModelSet) -> Iterator[Finding]:
-    highest = number(drone, "maxAltitude")
-    if highest is not None and highest <= 0.0:
-        yield Finding(drone, f"maxAltitude of '{label_of(drone)}' is {highest:g} m, it must be above 0")
 
 
 def _implausibly_fast(drone: Element, models: ModelSet) -> Iterator[Finding]:
@@ -53,28 +47,10 @@ def _plain_size(drone: Element, models: ModelSet) -> Iterator[Finding]:
         yield Finding(size, f"size of '{label_of(drone)}' does not tell its propellers")
 
 
-def _too_few_propellers(size: Element, models: ModelSet) -> Iterator[Finding]:
-    count = number(size, "propellers")
-    if count is not None and count < FEWEST_PROPELLERS:
-        yield Finding(size, f"propellers is {count:g}, a multicopter has at least {FEWEST_PROPELLERS}")
-
-
-def _propeller_not_positive(size: Element, models: ModelSet) -> Iterator[Finding]:
-    diameter = number(size, "propellerSize")
-    if diameter is not None and diameter <= 0.0:
-        yield Finding(size, f"propellerSize is {diameter:g} mm, it must be above 0")
-
-
 def _propeller_tiny(size: Element, models: ModelSet) -> Iterator[Finding]:
     diameter = number(size, "propellerSize")
     if diameter is not None and 0.0 < diameter < SMALLEST_PROPELLER:
         yield Finding(size, f"propellerSize is {diameter:g} mm, which is smaller than any propeller in use")
-
-
-def _hold_not_positive(drone: Element, models: ModelSet) -> Iterator[Finding]:
-    wind = number(drone, "positionHold")
-    if wind is not None and wind <= 0.0:
-        yield Finding(drone, f"positionHold of '{label_of(drone)}' is {wind:g} m/s, it must be above 0")
 
 
 def _windier_than_held(member: Element, models: ModelSet) -> Iterator[Finding]:
@@ -89,12 +65,6 @@ def _windier_than_held(member: Element, models: ModelSet) -> Iterator[Finding]:
             f"robot '{label_of(member)}' holds a position in wind of up to {held:g} m/s, "
             f"the context has {wind:g} m/s",
         )
-
-
-def _take_off_not_up(take_off: Element, models: ModelSet) -> Iterator[Finding]:
-    altitude = number(take_off, "altitude")
-    if altitude is not None and altitude <= 0.0:
-        yield Finding(take_off, f"altitude of the take-off is {altitude:g} m, it must be above the ground")
 
 
 def _take_off_too_high(take_off: Element, models: ModelSet) -> Iterator[Finding]:
@@ -125,7 +95,7 @@ CONSTRAINTS = (
         "MUL001",
         "The largest altitude of a drone is above zero",
         DRONE,
-        _altitude_not_positive,
+        positive("maxAltitude"),
         "give the height above the take-off point that the drone reaches, in metres",
     ),
     Constraint(
@@ -148,14 +118,14 @@ CONSTRAINTS = (
         "MUL004",
         "A drone has at least three propellers",
         DRONE_SIZE,
-        _too_few_propellers,
+        Range(("propellers",), low=3.0),
         "count each propeller, of coaxial pairs too",
     ),
     Constraint(
         "MUL005",
         "The size of propellers is above zero",
         DRONE_SIZE,
-        _propeller_not_positive,
+        positive("propellerSize"),
         "give the diameter in millimetres",
     ),
     Constraint(
@@ -170,7 +140,7 @@ CONSTRAINTS = (
         "MUL007",
         "The wind in which a drone holds its position is above zero",
         DRONE,
-        _hold_not_positive,
+        positive("positionHold"),
         "give the wind speed in metres per second, or leave it out where it is not known",
     ),
     Constraint(
@@ -191,7 +161,7 @@ CONSTRAINTS = (
         "MUL010",
         "A take-off leads up",
         TAKE_OFF,
-        _take_off_not_up,
+        positive("altitude"),
         "give the height above the take-off point, in metres",
     ),
     Constraint(

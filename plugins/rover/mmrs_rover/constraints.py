@@ -8,6 +8,7 @@ from math import atan2, degrees, dist, pi, tan
 
 from shapely import Point
 
+from mmrs_core.analysis.constraints.ranges import Range, at_least_zero, every
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
@@ -84,8 +85,6 @@ def _short(robot: DrawnRobot, terrain: Element, sketch: Sketch) -> float:
 
 
 MISSION = ("urn:mmrs:mission:1.0", "Mission")
-UPRIGHT = 90.0
-"""Degrees."""
 
 
 def _unknown_curves(rover: Element, models: ModelSet) -> Iterator[Finding]:
@@ -97,19 +96,6 @@ def _wide_on_tracks(rover: Element, models: ModelSet) -> Iterator[Finding]:
     radius = number(rover, "turningRadius") or 0.0
     if text(rover, "drive") == "TRACKS" and radius > 0.0:
         yield Finding(rover, f"turningRadius of '{label_of(rover)}' is {radius:g} m, though it is on tracks")
-
-
-def _negative_limits(rover: Element, models: ModelSet) -> Iterator[Finding]:
-    for name in ("turningRadius", "maxSlope", "wadingDepth", "groundClearance"):
-        figure = number(rover, name)
-        if figure is not None and not figure >= 0.0:
-            yield Finding(rover, f"{name} of '{label_of(rover)}' is {figure:g}, it must not be negative")
-
-
-def _climbs_walls(rover: Element, models: ModelSet) -> Iterator[Finding]:
-    steepest = number(rover, "maxSlope") or 0.0
-    if not steepest < UPRIGHT:
-        yield Finding(rover, f"maxSlope of '{label_of(rover)}' is {steepest:g}°, upright is {UPRIGHT:g}°")
 
 
 def _taller_than_itself(feature: str, rover: Element) -> Iterator[Finding]:
@@ -133,20 +119,6 @@ def _harmless(terrain: Element, models: ModelSet) -> Iterator[Finding]:
     if not any(number(terrain, feature) for feature, _, _ in LIMITS):
         names = ", ".join(feature for feature, _, _ in LIMITS)
         yield Finding(terrain, f"terrain '{label_of(terrain)}' states none of {names}: it bars no robot")
-
-
-def _no_such_ground(terrain: Element, models: ModelSet) -> Iterator[Finding]:
-    for feature, _, _ in LIMITS:
-        figure = number(terrain, feature)
-        if figure is not None and not figure >= 0.0:
-            yield Finding(
-                terrain, f"{feature} of terrain '{label_of(terrain)}' is {figure:g}, it must not be negative"
-            )
-    slope = number(terrain, "slope") or 0.0
-    if slope > UPRIGHT:
-        yield Finding(
-            terrain, f"slope of terrain '{label_of(terrain)}' is {slope:g}°, upright is {UPRIGHT:g}°"
-        )
 
 
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
@@ -211,14 +183,14 @@ CONSTRAINTS = (
         "ROV003",
         "The limits of a rover are not negative",
         ROVER,
-        _negative_limits,
+        at_least_zero("turningRadius", "maxSlope", "wadingDepth", "groundClearance"),
         "correct the figure, or leave it out",
     ),
     Constraint(
         "ROV004",
         "A rover climbs no walls",
         ROVER,
-        _climbs_walls,
+        Range(("maxSlope",), high=90.0, without_high=True),
         "write maxSlope in degrees from level; 100 % are 45 degrees",
     ),
     Constraint(
@@ -247,7 +219,7 @@ CONSTRAINTS = (
         "ROV008",
         "Slope, water and steps of terrain are possible",
         TERRAIN,
-        _no_such_ground,
+        every(at_least_zero(*(feature for feature, _, _ in LIMITS)), Range(("slope",), high=90.0)),
         "write the slope in degrees from level, depth and height in metres",
     ),
     Constraint(

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+from mmrs_core.analysis.constraints.ranges import Range, at_least_zero, every, positive, share
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.diagnostics import Severity
 from mmrs_solar.device_checks import undescribed, undone, unrecorded
 from mmrs_solar.figure_checks import (
+    OVERLAPS,
     camera_unreadable,
     coarse,
     dim,
-    group_not_positive,
     hasty,
-    overlap_outside,
-    task_not_positive,
 )
 from mmrs_solar.group_checks import (
-    angle_outside,
     name_shared,
     out_of_square,
     panel_outside,
@@ -23,7 +21,7 @@ from mmrs_solar.group_checks import (
     rows_overlap,
     too_dark,
 )
-from mmrs_solar.names import PANEL_GROUP, PANEL_LOOK_TASK, PANEL_TASK, THERMAL_ROW_TASK
+from mmrs_solar.names import IRRADIANCE, PANEL_GROUP, PANEL_LOOK_TASK, PANEL_TASK, THERMAL_ROW_TASK
 
 CONTEXT = ("urn:mmrs:context:1.0", "Context")
 DEVICE = ("urn:mmrs:robot:1.0", "Device")
@@ -33,14 +31,14 @@ CONSTRAINTS = (
         "SOL001",
         "Numbers and lengths of a panel group are above zero, its height is not negative",
         PANEL_GROUP,
-        group_not_positive,
+        every(positive("rows", "pitch", "rowWidth", "columns", "tiers", "cellSize"), at_least_zero("height")),
         "correct the figure, or leave it out where it is optional",
     ),
     Constraint(
         "SOL002",
         "Panels have a tilt from 0 to 90 and an azimuth from 0 to 360 degrees",
         PANEL_GROUP,
-        angle_outside,
+        every(Range(("tilt",), low=0.0, high=90.0), Range(("azimuth",), low=0.0, high=360.0)),
         "tilt 0 faces the sky, 90 the horizon; azimuth 180 is south",
     ),
     Constraint(
@@ -68,14 +66,14 @@ CONSTRAINTS = (
         "SOL006",
         "Lengths and speeds of tasks on panels are above zero, their irradiance is not negative",
         PANEL_TASK,
-        task_not_positive,
+        every(positive("distance", "pixelSize", "blur", "speed"), at_least_zero(IRRADIANCE)),
         "correct the figure, or leave it out where it is optional",
     ),
     Constraint(
         "SOL007",
         "Overlaps of thermal images are from 0 to below 1",
         THERMAL_ROW_TASK,
-        overlap_outside,
+        share(*OVERLAPS),
         "write 0.8 for an overlap of 80 per cent",
     ),
     Constraint(

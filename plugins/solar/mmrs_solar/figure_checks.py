@@ -19,44 +19,7 @@ LEAST_IRRADIANCE = 600.0
 RECOMMENDED = {"speed": 2.0, "frontOverlap": 0.8, "sideOverlap": 0.6}
 """Largest speed, smallest overlaps that inspectors go by."""
 
-GROUP_FIGURES = ("rows", "pitch", "rowWidth", "columns", "tiers", "cellSize")
-TASK_FIGURES = ("distance", "pixelSize", "blur", "speed")
 OVERLAPS = ("frontOverlap", "sideOverlap")
-
-
-def group_not_positive(group: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield figures of panel groups that are not above zero, and a height below it."""
-    yield from _not_above_zero(group, "panel group", GROUP_FIGURES)
-    yield from _below_zero(group, "panel group", "height")
-
-
-def task_not_positive(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield figures of panel tasks that are not above zero, and an irradiance below it."""
-    yield from _not_above_zero(task, "task", TASK_FIGURES)
-    yield from _below_zero(task, "task", IRRADIANCE)
-
-
-def _not_above_zero(element: Element, what: str, names: tuple[str, ...]) -> Iterator[Finding]:
-    for name in names:
-        found = number(element, name)
-        if found is not None and not (found > 0.0 and isfinite(found)):
-            yield Finding(element, f"{name} of {what} '{label_of(element)}' is {found:g}, it must be above 0")
-
-
-def _below_zero(element: Element, what: str, name: str) -> Iterator[Finding]:
-    found = number(element, name)
-    if found is not None and not found >= 0.0:
-        yield Finding(
-            element, f"{name} of {what} '{label_of(element)}' is {found:g}, it must not be negative"
-        )
-
-
-def overlap_outside(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield overlaps that are negative, or so large that images make no headway."""
-    for name in OVERLAPS:
-        overlap = number(task, name)
-        if overlap is not None and not 0.0 <= overlap < 1.0:
-            yield Finding(task, f"{name} of task '{label_of(task)}' is {overlap:g}")
 
 
 def coarse(task: Element, models: ModelSet) -> Iterator[Finding]:

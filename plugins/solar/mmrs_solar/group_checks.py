@@ -17,14 +17,6 @@ SQUARE = 2.0
 """Degrees by which azimuth and rows may be out of square, as surveyed points are."""
 
 
-def angle_outside(group: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield tilts and azimuths that no panel has."""
-    for name, most in (("tilt", 90.0), ("azimuth", 360.0)):
-        found = number(group, name)
-        if found is not None and not 0.0 <= found <= most:
-            yield Finding(group, f"{name} of panel group '{label_of(group)}' is {found:g} degrees")
-
-
 def out_of_square(group: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield panel groups whose first row has no length, or is not square to where its panels face."""
     positions = sketch_of(models).ground.positions

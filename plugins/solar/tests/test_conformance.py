@@ -171,12 +171,16 @@ def registry():
 @pytest.mark.parametrize(
     ("code", "models", "message"),
     [
-        ("SOL001", lambda r: [place(group(r, height=-1.0))], "height of panel group 'south' is -1"),
-        ("SOL001", lambda r: [place(group(r, tiers=0))], "tiers of panel group 'south' is 0"),
-        ("SOL002", lambda r: [place(group(r, azimuth=-1.0))], "azimuth of panel group 'south' is -1 degrees"),
+        ("SOL001", lambda r: [place(group(r, height=-1.0))], "height of PanelGroup 'south' is -1"),
+        ("SOL001", lambda r: [place(group(r, tiers=0))], "tiers of PanelGroup 'south' is 0"),
+        ("SOL002", lambda r: [place(group(r, azimuth=-1.0))], "azimuth of PanelGroup 'south' is -1"),
         ("SOL004", lambda r: [place(group(r, pitch=None))], "pitch of panel group 'south' is missing"),
         ("SOL005", lambda r: [place(group(r, name=""))], "panel group has no name"),
-        ("SOL006", lambda r: [rows(r, minimumIrradiance=-1.0)], "minimumIrradiance of task 'it' is -1"),
+        (
+            "SOL006",
+            lambda r: [rows(r, minimumIrradiance=-1.0)],
+            "minimumIrradiance of ThermalRowTask 'it' is -1",
+        ),
         ("SOL008", lambda r: [rows(r, firstRow=0)], "task 'it' asks for rows 0 to 4, 'south' has 1 to 4"),
         ("SOL009", lambda r: [look(r, 0, 1)], "row 0 is suspected by task 'it'"),
         ("SOL009", lambda r: [look(r, 1, 1, 2)], "tier 2 is suspected by task 'it'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mmrs_core.analysis.constraints.ranges import share
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.diagnostics import Severity
 from mmrs_core.planning.limits import MOST
@@ -9,10 +10,10 @@ from mmrs_survey import names
 from mmrs_survey.amounts import MANY, amount_over
 from mmrs_survey.device_checks import action_undone, camera_unreadable, device_unclear, parameter_unknown
 from mmrs_survey.grid_checks import (
+    OVERLAPS,
     footprint_twice,
     half_footprint,
     nothing_seen,
-    overlap_outside,
     overlap_unused,
     resolution_coarse,
     resolution_unfounded,
@@ -20,8 +21,8 @@ from mmrs_survey.grid_checks import (
 )
 from mmrs_survey.reach_checks import nothing_reached, partly_reached
 from mmrs_survey.task_checks import (
+    IN_RANGES,
     looks_at_itself,
-    not_positive,
     nowhere_to_measure,
     object_anywhere,
     relay_bound,
@@ -52,14 +53,14 @@ CONSTRAINTS = (
         "SUR003",
         "Overlaps are from 0 to below 1",
         names.PHOTO_TASK,
-        overlap_outside,
+        share(*OVERLAPS),
         "write 0.8 for an overlap of 80 per cent",
     ),
     Constraint(
         "SUR004",
         "Lengths, distances, durations and speeds of survey tasks are not negative, most of them above zero",
         TASK,
-        not_positive,
+        IN_RANGES,
         "correct the figure, or leave it out where it is optional",
     ),
     Constraint(

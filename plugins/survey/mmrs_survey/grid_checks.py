@@ -34,14 +34,6 @@ def nothing_seen(task: Element, models: ModelSet) -> Iterator[Finding]:
         yield Finding(task, f"task '{label_of(task)}' does not define the distance between photos")
 
 
-def overlap_outside(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield overlaps that are negative, or so large that photos make no headway."""
-    for name in OVERLAPS:
-        overlap = number(task, name)
-        if overlap is not None and not 0.0 <= overlap < 1.0:
-            yield Finding(task, f"{name} of task '{label_of(task)}' is {overlap:g}")
-
-
 def half_footprint(task: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield footprints with a width only or a length only."""
     given = _given(task, FOOTPRINT)

@@ -4,45 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mmrs_core.analysis.constraints.ranges import at_least_zero, every, of_kind, positive
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.grounding.features import child, children, number, text, texts
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_survey import names
 
-ABOVE_ZERO = {
-    names.PHOTO_TASK: ("footprintWidth", "footprintLength", "groundResolution", "speed", "blur"),
-    names.PHOTO_GRID_TASK: ("gridResolution",),
-    names.PATH_PHOTO_TASK: ("photoDistance",),
-    names.PERIMETER_TASK: ("layers",),
-    names.ORBIT_TASK: ("radius", "turns"),
-    names.OBSERVE_TASK: ("duration",),
-    names.MEASURE_TASK: ("spacing",),
-}
-NOT_NEGATIVE = {
-    names.ROAD_TASK: ("width", "turnaroundDistance"),
-    names.OBSERVE_TASK: ("distance",),
-    names.MEASURE_TASK: ("depth",),
-    names.APPROACH_TASK: ("distance", "tolerance"),
-}
-
-
-def not_positive(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield figures that must be above zero, or not negative, and are not."""
-    for name in _of(task, ABOVE_ZERO):
-        figure = number(task, name)
-        if figure is not None and not figure > 0.0:
-            yield Finding(task, f"{name} of task '{label_of(task)}' is {figure:g}, it must be above 0")
-    for name in _of(task, NOT_NEGATIVE):
-        figure = number(task, name)
-        if figure is not None and not figure >= 0.0:
-            yield Finding(task, f"{name} of task '{label_of(task)}' is {figure:g}, it must not be negative")
-
-
-def _of(task: Element, figures: dict[tuple[str, str], tuple[str, ...]]) -> Iterator[str]:
-    for metaclass, features in figures.items():
-        if is_kind(task, *metaclass):
-            yield from features
+IN_RANGES = every(
+    of_kind(
+        names.PHOTO_TASK, positive("footprintWidth", "footprintLength", "groundResolution", "speed", "blur")
+    ),
+    of_kind(names.PHOTO_GRID_TASK, positive("gridResolution")),
+    of_kind(names.PATH_PHOTO_TASK, positive("photoDistance")),
+    of_kind(names.PERIMETER_TASK, positive("layers")),
+    of_kind(names.ORBIT_TASK, positive("radius", "turns")),
+    of_kind(names.OBSERVE_TASK, positive("duration")),
+    of_kind(names.MEASURE_TASK, positive("spacing")),
+    of_kind(names.ROAD_TASK, at_least_zero("width", "turnaroundDistance")),
+    of_kind(names.OBSERVE_TASK, at_least_zero("distance")),
+    of_kind(names.MEASURE_TASK, at_least_zero("depth")),
+    of_kind(names.APPROACH_TASK, at_least_zero("distance", "tolerance")),
+)
 
 
 def relay_bound(mission: Element, models: ModelSet) -> Iterator[Finding]:

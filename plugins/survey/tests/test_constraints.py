@@ -210,7 +210,7 @@ def test_half_a_task_crashes_no_constraint(metaclass, registry):
 )
 def test_negative_figures_are_found_in_every_task(metaclass, feature, registry):
     (message,) = breaches(BY_CODE["SUR004"], [task(registry, metaclass, **{feature: -1.0})])
-    assert message.startswith(f"{feature} of task 'it' is -1")
+    assert message.startswith(f"{feature} of {metaclass} 'it' is -1")
 
 
 @pytest.mark.parametrize("shell", [corners(2), corners(3)])

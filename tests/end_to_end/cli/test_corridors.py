@@ -52,4 +52,4 @@ def test_a_corridor_without_a_width_is_refused(mmrs, tmp_path):
     drawing = tmp_path / "lane.geojson"
     drawing.write_text(json.dumps({"type": "FeatureCollection", "features": [LANE]}))
     code, _, err = mmrs("import", drawing, "--into", project, "--as", "lane*=Corridor")
-    assert (code, f"Corridor '{NAME}': width is 0, but must be more than 0 [CTX018]" in err) == (1, True)
+    assert (code, f"width of Corridor '{NAME}' is 0, but must be more than 0 [CTX018]" in err) == (1, True)

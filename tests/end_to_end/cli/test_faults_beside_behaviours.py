@@ -1,5 +1,6 @@
 """Commands that act on a behaviour refuse the faults of its context and robot types, as validate does."""
 
+import re
 import shutil
 
 import pytest
@@ -30,7 +31,7 @@ def test_a_negative_safety_distance_is_refused(mmrs, project, tmp_path, monkeypa
     code, out, err = mmrs(command[0], project / "behaviour.xmi", *command[1:])
     assert code == 1
     assert "safe\n" not in out
-    assert "safetyDistance is -5, but must be at least 0 [CTX005]" in err
+    assert re.search(r"safetyDistance of \S+.* is -5, but must be at least 0 \[CTX005\]", err)
     assert list(tmp_path.iterdir()) == [project]
 
 

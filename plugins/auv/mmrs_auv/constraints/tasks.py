@@ -11,6 +11,7 @@ from mmrs_auv.tasks.pipelines import way_along
 from mmrs_auv.tasks.surveys import height_of, swath_at
 from mmrs_core.analysis.constraints.blocked import blocked_line
 from mmrs_core.analysis.constraints.capabilities import able
+from mmrs_core.analysis.constraints.ranges import Range, at_least_zero, every, of_kind, positive, share
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.analysis.fixes.figures import as_part, exchanged
 from mmrs_core.contributions.constraints import Constraint, Finding
@@ -27,18 +28,18 @@ CONTEXT = ("urn:mmrs:context:1.0", "Context")
 
 _Findings: TypeAlias = Iterator[Finding]
 
-ABOVE_ZERO = {
-    names.DEPTH_HOLD_SURVEY_TASK: ("swath",),
-    names.INSPECT_OBJECT_TASK: ("distance", "views"),
-    names.ALIGN_TASK: ("distance",),
-    names.RECORDING: ("speed",),
-}
-NOT_BELOW_ZERO = {
-    names.INSPECT_OBJECT_TASK: ("duration",),
-    names.ALIGN_TASK: ("duration", "tolerance"),
-    names.SURFACE_TASK: ("duration",),
-    names.FOLLOW_PIPELINE_TASK: ("height",),
-}
+IN_RANGES = every(
+    of_kind(names.DEPTH_HOLD_SURVEY_TASK, positive("swath")),
+    of_kind(names.INSPECT_OBJECT_TASK, positive("distance", "views")),
+    of_kind(names.ALIGN_TASK, positive("distance")),
+    of_kind(names.RECORDING, positive("speed")),
+    of_kind(names.INSPECT_OBJECT_TASK, at_least_zero("duration")),
+    of_kind(names.ALIGN_TASK, at_least_zero("duration", "tolerance")),
+    of_kind(names.SURFACE_TASK, at_least_zero("duration")),
+    of_kind(names.FOLLOW_PIPELINE_TASK, at_least_zero("height")),
+)
+IN_WATER = at_least_zero("depth", "minDepth")
+UNDER_WATER = every(of_kind(names.DEPTH_HOLD_SURVEY_TASK, IN_WATER), of_kind(names.YO_YO_TASK, IN_WATER))
 
 
 def _swath_missing(task: Element, models: ModelSet) -> _Findings:
@@ -60,12 +61,6 @@ def _properties(device: Element) -> dict[str, str]:
     return {text(each, "name"): text(each, "value") for each in children(device, "properties")}
 
 
-def _overlap_outside(task: Element, models: ModelSet) -> _Findings:
-    overlap = number(task, "overlap")
-    if overlap is not None and not 0.0 <= overlap < 1.0:
-        yield Finding(task, f"overlap of task '{label_of(task)}' is {overlap:g}, not from 0 to below 1")
-
-
 def _below_bottom(task: Element, models: ModelSet) -> _Findings:
     depth, bottom = number(task, "depth"), number(task, "bottomDepth")
     if depth is not None and bottom is not None and depth >= bottom:
@@ -79,32 +74,6 @@ def _depths_upside_down(task: Element, models: ModelSet) -> _Findings:
             task,
             f"maxDepth of task '{label_of(task)}' is {lower:g} m, not below its minDepth of {upper:g} m",
         )
-
-
-def _pitch_outside(task: Element, models: ModelSet) -> _Findings:
-    pitch = number(task, "pitch")
-    if pitch is not None and not 0.0 < pitch < 90.0:
-        yield Finding(task, f"pitch of task '{label_of(task)}' is {pitch:g} degrees, not between 0 and 90")
-
-
-def _out_of_range(task: Element, models: ModelSet) -> _Findings:
-    for figures, least in ((ABOVE_ZERO, "above 0"), (NOT_BELOW_ZERO, "0 or above")):
-        for metaclass, listed in figures.items():
-            for name in listed if is_kind(task, *metaclass) else ():
-                found = number(task, name)
-                if found is not None and (found < 0.0 or (found == 0.0 and figures is ABOVE_ZERO)):
-                    yield Finding(task, f"{name} of task '{label_of(task)}' is {found:g}, it must be {least}")
-
-
-def _above_water(task: Element, models: ModelSet) -> _Findings:
-    for name in ("depth", "minDepth"):
-        depth = number(task, name) if _is_ours(task) else None
-        if depth is not None and depth < 0.0:
-            yield Finding(task, f"{name} of task '{label_of(task)}' is {depth:g} m, above the surface")
-
-
-def _is_ours(task: Element) -> bool:
-    return is_kind(task, *names.DEPTH_HOLD_SURVEY_TASK) or is_kind(task, *names.YO_YO_TASK)
 
 
 def _never_begun(task: Element, models: ModelSet) -> _Findings:
@@ -144,7 +113,7 @@ TASK_CONSTRAINTS = (
         "AUV023",
         "Swaths overlap by a part of their width",
         names.DEPTH_HOLD_SURVEY_TASK,
-        _overlap_outside,
+        share("overlap"),
         "write a part of one: 0.2 is a fifth of the swath",
     ),
     Constraint(
@@ -165,21 +134,21 @@ TASK_CONSTRAINTS = (
         "AUV026",
         "A yo-yo goes neither level nor upright",
         names.YO_YO_TASK,
-        _pitch_outside,
+        Range(("pitch",), low=0.0, high=90.0, without_low=True, without_high=True),
         "pitch is in degrees, such as 15",
     ),
     Constraint(
         "AUV027",
         "Distances, speeds, numbers and durations of tasks under water are positive",
         TASK,
-        _out_of_range,
+        IN_RANGES,
         "correct the figure, or leave it out where it is optional",
     ),
     Constraint(
         "AUV028",
         "Depths of tasks count down from the surface",
         TASK,
-        _above_water,
+        UNDER_WATER,
         "write depths as positive numbers",
     ),
     Constraint(

@@ -7,6 +7,7 @@ from math import inf
 
 from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
 from mmrs_auv.names import AUV_MOVEMENT, FOLLOW_PIPELINE_TASK, IN_WATER_SIZE, THRUSTER, VEHICLE, YO_YO_TASK
+from mmrs_core.analysis.constraints.ranges import positive
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
@@ -124,15 +125,6 @@ def _thrust_upside_down(thruster: Element, models: ModelSet) -> Iterator[Finding
 
 def _power_upside_down(thruster: Element, models: ModelSet) -> Iterator[Finding]:
     return _upside_down(thruster, "operatingPower", "maxPower", "W")
-
-
-def _not_positive(thruster: Element, models: ModelSet) -> Iterator[Finding]:
-    for name in ("maxDepth", "operatingThrust", "maxThrust", "operatingPower", "maxPower"):
-        figure = number(thruster, name)
-        if figure is not None and figure <= 0.0:
-            yield Finding(
-                thruster, f"{name} of thruster '{label_of(thruster)}' is {figure:g}, it must be above 0"
-            )
 
 
 def _repeated_degree(thruster: Element, models: ModelSet) -> Iterator[Finding]:
@@ -254,7 +246,7 @@ VEHICLE_CONSTRAINTS = (
         "AUV009",
         "The figures of a thruster are above zero",
         THRUSTER,
-        _not_positive,
+        positive("maxDepth", "operatingThrust", "maxThrust", "operatingPower", "maxPower"),
         "correct the figure, or leave it out where it is optional",
     ),
     Constraint(
