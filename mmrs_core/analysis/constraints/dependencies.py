@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from mmrs_core.analysis.constraints.findings import MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import sketch_of
+from mmrs_core.behaviour.walk import components
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import child, children, number
@@ -37,38 +38,12 @@ def cycles_in(after: Mapping[Node, Collection[Node]]) -> Iterator[tuple[Node, ..
 
 
 def _knots(nodes: Sequence[Node], after: Mapping[Node, Collection[Node]]) -> Iterator[frozenset[Node]]:
-    """Yield the sets of nodes that lead to each other, those of one node left out (Kosaraju, 1978)."""
-    inside = frozenset(nodes)
-    following = {node: [each for each in after[node] if each in inside] for node in nodes}
-    before: dict[Node, list[Node]] = {node: [] for node in nodes}
-    for node, edges in following.items():
-        for each in edges:
-            before[each].append(node)
-    left: set[Node] = set()
-    for node in reversed(_left(nodes, following, set())):
-        knot = frozenset(_left((node,), before, left))
-        if len(knot) > 1:
-            yield knot
-
-
-def _left(
-    starts: Sequence[Node], edges: Mapping[Node, Sequence[Node]], entered: set[Node]
-) -> tuple[Node, ...]:
-    """Return the nodes that a depth first search newly enters, in the order in which it leaves them."""
-    order: list[Node] = []
-    for start in starts:
-        open_nodes = [] if start in entered else [(start, iter(edges[start]))]
-        entered.add(start)
-        while open_nodes:
-            node, rest = open_nodes[-1]
-            each = next((each for each in rest if each not in entered), None)
-            if each is None:
-                order.append(node)
-                open_nodes.pop()
-            else:
-                entered.add(each)
-                open_nodes.append((each, iter(edges[each])))
-    return tuple(order)
+    """Yield the sets of nodes that lead to each other, those of one node left out."""
+    place = {node: index for index, node in enumerate(nodes)}
+    graph = [[place[each] for each in after[node] if each in place] for node in nodes]
+    for part in reversed(components(graph)):
+        if len(part) > 1:
+            yield frozenset(nodes[index] for index in part)
 
 
 def _shortest_cycle(
