@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -23,6 +22,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from mmrs_core.cli.bus_access import Holder, configuration
 from mmrs_runtime.bus.carriers.revocation import REVOKED, serial_of, valid_name
+from mmrs_runtime.records.disk import write_secret
 
 AUTHORITY = "authority"
 """Stem of the authority's files, which sign the certificates; its key belongs on no robot."""
@@ -84,8 +84,10 @@ def make_keys(
         if _name_in(own) != name:
             _certify(own, name, hosts, signer, now, days)
         for common in (f"{AUTHORITY}.pem", REVOKED):
-            _write(own / common, (folder / common).read_bytes())
-        _write(own / "bus.json5", json.dumps(configuration(holder, everybody), indent=2).encode() + b"\n")
+            write_secret(own / common, (folder / common).read_bytes())
+        write_secret(
+            own / "bus.json5", json.dumps(configuration(holder, everybody), indent=2).encode() + b"\n"
+        )
         made.append(own)
     return tuple(made)
 
@@ -145,7 +147,7 @@ def _revoked(folder: Path, signer: _Signer, holders: Sequence[str], now: datetim
         signer = replace(signer, list=listed)
         content = signer.list.public_bytes(Encoding.PEM)
         for path in (folder, *(path.parent for path in folder.glob(f"*/{_CERTIFICATE}"))):
-            _write(path / REVOKED, content)
+            write_secret(path / REVOKED, content)
     return signer
 
 
@@ -178,9 +180,9 @@ def _new_authority(folder: Path, now: datetime, days: int) -> _Signer:
         .sign(made, SHA256())
     )
     signer = _Signer(signed, made, _list(signed, made, (), now))
-    _write(folder / f"{AUTHORITY}.key.pem", _pem(made))
-    _write(folder / REVOKED, signer.list.public_bytes(Encoding.PEM))
-    _write(folder / f"{AUTHORITY}.pem", signed.public_bytes(Encoding.PEM))
+    write_secret(folder / f"{AUTHORITY}.key.pem", _pem(made))
+    write_secret(folder / REVOKED, signer.list.public_bytes(Encoding.PEM))
+    write_secret(folder / f"{AUTHORITY}.pem", signed.public_bytes(Encoding.PEM))
     return signer
 
 
@@ -215,8 +217,8 @@ def _certify(own: Path, name: str, hosts: Sequence[str], signer: _Signer, now: d
         .add_extension(_usage(signs=False), critical=True)
         .sign(signer.key, SHA256())
     )
-    _write(own / "key.pem", _pem(key))
-    _write(own / _CERTIFICATE, signed.public_bytes(Encoding.PEM))
+    write_secret(own / "key.pem", _pem(key))
+    write_secret(own / _CERTIFICATE, signed.public_bytes(Encoding.PEM))
 
 
 def _builder(
@@ -259,16 +261,3 @@ def _usage(*, signs: bool) -> x509.KeyUsage:
 
 def _pem(key: ec.EllipticCurvePrivateKey) -> bytes:
     return key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write a file that only its owner may read, whole or not at all."""
-    part = path.with_suffix(".part")
-    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        part.replace(path)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise

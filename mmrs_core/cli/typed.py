@@ -20,17 +20,22 @@ QUIT = frozenset({"quit", "exit"})
 def typed_lines() -> queue.SimpleQueue[str]:
     """Return the queue of typed lines, which stays empty without a terminal or a pipe."""
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+    listen(lines.put)
+    return lines
+
+
+def listen(received: Callable[[str], object]) -> None:
+    """Call a function with every line that is typed, from a thread, until it raises RuntimeError."""
 
     def read() -> None:
-        with suppress(OSError):  # a background process cannot read from its terminal
+        with suppress(OSError, RuntimeError):  # a background process cannot read from its terminal
             for line in sys.stdin:
-                lines.put(line)
+                received(line)
 
     if hasattr(signal, "SIGTTIN"):
         signal.signal(signal.SIGTTIN, signal.SIG_IGN)
     if sys.stdin is not None and not sys.stdin.closed:
         threading.Thread(target=read, name="typed lines", daemon=True).start()
-    return lines
 
 
 def addressed(text: str, names: Sequence[str]) -> tuple[tuple[str, ...], str, tuple[str, ...]]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from math import degrees
 from typing import TYPE_CHECKING, NamedTuple
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.walk import successors
 from mmrs_core.contributions.rules import MoveKind, most_specific
-from mmrs_core.contributions.runs import STRAIGHT_DEGREES, runs_of, turn_degrees
-from mmrs_core.scene.headings import bearing
+from mmrs_core.contributions.runs import STRAIGHT_DEGREES, runs_of
+from mmrs_core.scene.headings import bearing, turn_at
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram
@@ -131,7 +132,7 @@ class Passages:
         if beyond is None or len(beyond) < 2:
             return None
         flowing = not self._careful or (index in self._uploaded and not self._stops)
-        if not flowing and turn_degrees(path[-2], path[-1], beyond[1]) > STRAIGHT_DEGREES:
+        if not flowing and degrees(turn_at(path[-2], path[-1], beyond[1])) > STRAIGHT_DEGREES:
             return None
         rates = self.kinematics(move).rates(move.speed)
         arriving = (path[-2], path[-1])

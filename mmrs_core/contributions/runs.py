@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import acos, degrees, hypot
 from typing import TYPE_CHECKING
 
 from mmrs_core.contributions.rules import MoveKind, most_specific
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram, Transition
-    from mmrs_core.scene import Name, Position
+    from mmrs_core.scene import Name
 
 SHORTEST = 3
 """Runs of fewer moves are commanded one by one: uploading them gains nothing."""
@@ -63,14 +62,3 @@ def _is_plain(move: Move, move_kinds: Mapping[Name, MoveKind]) -> bool:
     path = move_kinds[name].path(move, (east - 10.0, north - 10.0, up - 10.0), None)
     plain = target.description is None and move.distance == 0.0 and move.heading is None
     return plain and path is not None and len(path) == 2
-
-
-def turn_degrees(before: Position, here: Position, after: Position) -> float:
-    """Return by how many degrees the path turns at a position; 180 where a leg has no length."""
-    a = tuple(q - p for p, q in zip(before, here, strict=True))
-    b = tuple(q - p for p, q in zip(here, after, strict=True))
-    lengths = hypot(*a) * hypot(*b)
-    if lengths == 0.0:
-        return 180.0
-    cosine = sum(p * q for p, q in zip(a, b, strict=True)) / lengths
-    return degrees(acos(max(-1.0, min(1.0, cosine))))

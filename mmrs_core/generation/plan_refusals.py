@@ -35,8 +35,13 @@ def of_policies(robot: RobotProgram, context: RobotContext, wording: Wording) ->
 
 def of_policy(policy: Policy, wording: Wording) -> str:
     """Return why a policy is refused."""
+    return f"{policy_words(policy)}, which only {wording.policy} can do"
+
+
+def policy_words(policy: Policy) -> str:
+    """Return a policy in words."""
     after = "" if policy.after is None else f" after {policy.after:g} s"
-    return f"policy {policy.event}{after}: {policy.response}, which only {wording.policy} can do"
+    return f"policy {policy.event}{after}: {policy.response}"
 
 
 def of_movement(move: Move, context: RobotContext, wording: Wording) -> Iterator[str]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from math import acos, dist, hypot, inf, pi
+from math import dist, inf, pi
 
 import shapely
 
 from mmrs_core.scene import Area, Corridor, Kinematics, Position, Robot
+from mmrs_core.scene.headings import turn_at
 
 LEAST_CUT = 2.0
 """Metres by which a corner may be cut at least: autopilots count a place as passed within a radius, and may
@@ -62,7 +63,7 @@ class Corners:
             end: of the leg from there.
             speed: commanded on the leg to the corner, metres per second; None: its cruise.
         """
-        if start is not None and _turn(start, corner, end) < STRAIGHT:
+        if start is not None and turn_at(start, corner, end) < STRAIGHT:
             return True
         kinematics = self._robot.kinematics
         if kinematics is None:
@@ -78,16 +79,5 @@ class Corners:
 
 def _fits(kinematics: Kinematics, start: Position, corner: Position, end: Position) -> bool:
     shorter = min(dist(start[:2], corner[:2]), dist(corner[:2], end[:2]))
-    turn = _turn(start, corner, end)
+    turn = turn_at(start, corner, end)
     return turn < pi and kinematics.fits_curve(turn, shorter)
-
-
-def _turn(start: Position, corner: Position, end: Position) -> float:
-    """Return the angle by which the path turns at the corner, in radians; pi where it is not defined."""
-    a = tuple(y - x for x, y in zip(start, corner, strict=True))
-    b = tuple(y - x for x, y in zip(corner, end, strict=True))
-    lengths = hypot(*a) * hypot(*b)
-    if lengths == 0.0:
-        return pi
-    cosine = sum(x * y for x, y in zip(a, b, strict=True)) / lengths
-    return acos(max(-1.0, min(1.0, cosine)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, degrees, hypot
+from math import acos, atan2, degrees, hypot, pi
 
 from mmrs_core.scene.primitives import Position
 
@@ -19,3 +19,14 @@ def bearing(start: Position, finish: Position) -> float | None:
 def turn(first: float, last: float) -> float:
     """Return the degrees to turn from one heading to another, clockwise positive, -180 to 180."""
     return (last - first + 180.0) % 360.0 - 180.0
+
+
+def turn_at(before: Position, corner: Position, after: Position) -> float:
+    """Return the angle by which a path turns at a corner, in radians; pi where a leg has no length."""
+    a = tuple(q - p for p, q in zip(before, corner, strict=True))
+    b = tuple(q - p for p, q in zip(corner, after, strict=True))
+    lengths = hypot(*a) * hypot(*b)
+    if lengths == 0.0:
+        return pi
+    cosine = sum(p * q for p, q in zip(a, b, strict=True)) / lengths
+    return acos(max(-1.0, min(1.0, cosine)))

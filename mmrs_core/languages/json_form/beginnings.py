@@ -269,11 +269,11 @@ class Beginnings:
         feature = start.feature
         if metaclass.implementation is None:
             message = f"{metaclass.name}: abstract; state a concrete subclass by {TYPE}"
-            self._members.fault("XMI003", message, start.line, start.owner)
+            self._draft.fault("XMI003", message, start.line, start.owner)
             return False
         if is_claimed and feature is not None and not _fits(feature, metaclass):
             message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
-            self._members.fault("XMI008", message, start.line, start.owner)
+            self._draft.fault("XMI008", message, start.line, start.owner)
             return False
         return True
 

@@ -85,17 +85,18 @@ class Members:
         key, line = event[1], self._stream.line(event[3])
         skip(event, self._events)
         if key == ID and event[0] == TEXT and event[2]:
-            self._identify(element, event[2], own=False)
+            self._draft.identify(element, event[2], element._mmrs_line, own=False)
         elif key == ID:
-            self.fault("XMI010", f"{ID}: takes a text", line, element)
+            self._draft.fault("XMI010", f"{ID}: takes a text", line, element)
         elif not is_own(key):
             label = label_of(element)
             message = f"{key}: no feature of {metaclass.name}{label and f' {label!r}'}"
             helps = len(self._draft.diagnostics) < _HELPED_FAULTS
-            self.fault("XMI004", message, line, element, nearest(key, metaclass.by_name) if helps else "")
+            hint = nearest(key, metaclass.by_name) if helps else ""
+            self._draft.fault("XMI004", message, line, element, hint)
         elif key != TYPE and not (at_top and key in HEAD):
             message = f"{key}: no key of this form, and no feature of {metaclass.name}"
-            self.fault("XMI004", message, line, element, nearest(key, (TYPE, ID, REF)))
+            self._draft.fault("XMI004", message, line, element, nearest(key, (TYPE, ID, REF)))
 
     def feature(self, element: Element, feature: Feature, event: Event) -> None:
         """Take a member that is an attribute, or a reference that does not contain."""
@@ -128,25 +129,11 @@ class Members:
         hint: str = "",
     ) -> None:
         """Report what cannot be the value of an attribute."""
-        self.fault(code, f"{feature.name}: {reason}", self._stream.line(place), element, hint, feature)
-
-    def fault(
-        self,
-        code: str,
-        message: str,
-        line: int,
-        element: Element | None,
-        hint: str = "",
-        broken: Feature | None = None,
-    ) -> None:
-        """Report a fault, and the feature that it leaves without its value."""
-        self._draft.fault(code, message, line, element, hint)
-        if element is not None and broken is not None:
-            self._draft.broken.add((element, broken.name))
+        self._draft.fault(code, f"{feature.name}: {reason}", self._stream.line(place), element, hint, feature)
 
     def no_object(self, element: Element, feature: Feature, line: int) -> None:
         """Report what stands where only elements can."""
-        self.fault("XMI010", f"{feature.name}: takes objects", line, element, broken=feature)
+        self._draft.fault("XMI010", f"{feature.name}: takes objects", line, element, broken=feature)
 
     # attributes
 
@@ -191,7 +178,7 @@ class Members:
         else:
             type(element)._mmrs_slots[feature.attribute].__set__(element, found)
         if feature.is_id:
-            self._identify(element, text, own=True)
+            self._draft.identify(element, text, element._mmrs_line, own=True)
 
     def _null(self, element: Element, feature: Feature, place: Place) -> None:
         if is_null(feature, None):
@@ -202,15 +189,6 @@ class Members:
             type(element)._mmrs_slots[feature.attribute].__set__(element, None)
         else:
             self.nothing(element, feature)
-
-    def _identify(self, element: Element, identifier: str, own: bool) -> None:
-        """Take note of an identifier: a value of the element itself (`own`), or what the file calls it."""
-        other = self._draft.ids.setdefault(identifier, element)
-        if other is not element:
-            message = f"{identifier}: an id used twice; first on line {other._mmrs_line}"
-            self.fault("XMI012", message, element._mmrs_line, element)
-        elif not own:
-            self._draft.source.ids[element] = identifier
 
     # references
 
@@ -226,7 +204,7 @@ class Members:
             self.nothing(element, feature)
         elif count > 1:
             message = f"{feature.name}: a list of {count}, takes one"
-            self.fault("XMI009", message, line, element, broken=feature)
+            self._draft.fault("XMI009", message, line, element, broken=feature)
         elif first[0] is None:
             self._no_link(element, feature, line)
         else:
@@ -258,7 +236,7 @@ class Members:
 
     def _no_link(self, element: Element, feature: Feature, line: int) -> None:
         message = f"{feature.name}: takes the names or paths of elements, such as //@tasks.0"
-        self.fault("XMI010", message, line, element, broken=feature)
+        self._draft.fault("XMI010", message, line, element, broken=feature)
 
     def _links(self, event: Event, feature: Feature, line: int) -> Iterator[tuple[str | None, int]]:
         """Yield each reference with its line; None where it is none."""

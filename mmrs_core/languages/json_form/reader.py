@@ -227,4 +227,4 @@ class JsonReader:
             self._members.nothing(ended.element, feature)
         elif feature is not None and ended.count > 1 and not feature.many:
             message = f"{feature.name}: a list of {ended.count}, takes one"
-            self._members.fault("XMI009", message, ended.line, ended.element, broken=feature)
+            self._draft.fault("XMI009", message, ended.line, ended.element, broken=feature)

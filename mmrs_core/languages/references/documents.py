@@ -119,9 +119,13 @@ class Draft:
         line: int,
         element: Element | None = None,
         hint: str = "",
+        broken: Feature | None = None,
         severity: Severity = Severity.ERROR,
     ) -> None:
         """Note a fault at a line, in an element if it is known.
+
+        Args:
+            broken: the feature of the element that is left without its value.
 
         Raises:
             UnreadableError: if there are too many to read: then it is not a model at all.
@@ -131,10 +135,21 @@ class Draft:
             message = f"more than {MOST_FAULTS} faults; the first is: {first.message}"
             raise UnreadableError.of("FIL008", message, self.source.file, line)
         path = path_of(element) if element is not None else ""
+        if element is not None and broken is not None:
+            self.broken.add((element, broken.name))
         self._read_below.append(len(self.roots) - 1)
         self.diagnostics.append(
             Diagnostic(code, severity, message, Place(self.source.file, line, path), hint)
         )
+
+    def identify(self, element: Element, identifier: str, line: int, *, own: bool) -> None:
+        """Note an identifier: a value of the element itself (`own`), or what the file calls it."""
+        other = self.ids.setdefault(identifier, element)
+        if other is not element:
+            message = f"{identifier}: an id used twice; first on line {other._mmrs_line}"
+            self.fault("XMI012", message, line, element)
+        elif not own:
+            self.source.ids[element] = identifier
 
     def take(self, roots: Sequence[Element], diagnostics: Iterable[Diagnostic]) -> None:
         """Take elements that were made of the file, and their diagnostics."""

@@ -328,5 +328,4 @@ def _tell_other_end(reference: Pending, target: Element, draft: Draft, known: di
 
 
 def _fault(code: str, message: str, reference: Pending, draft: Draft, hint: str = "") -> None:
-    draft.fault(code, message, reference.line, reference.element, hint)
-    draft.broken.add((reference.element, reference.feature.name))
+    draft.fault(code, message, reference.line, reference.element, hint, reference.feature)

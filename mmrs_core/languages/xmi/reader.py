@@ -102,8 +102,8 @@ class XmiReader:
     def _inside(self, frame: Frame, tag: str, attributes: list[str]) -> None:
         element, metaclass, open_feature = frame
         if open_feature is not None:
-            self._fault("XMI010", f"{tag}: an element inside a value of {open_feature.name}", element)
-            self._draft.broken.add((element, open_feature.name))
+            message = f"{tag}: an element inside a value of {open_feature.name}"
+            self._fault("XMI010", message, element, broken=open_feature)
             self._ignored = 1
             return
         feature = metaclass.by_name.get(tag)
@@ -232,7 +232,7 @@ class XmiReader:
             if feature is not None:
                 self._attribute(element, feature, text)
             elif name == _ID:
-                self._identify(element, text, own=False)
+                self._draft.identify(element, text, self._document.line, own=False)
             elif name not in HARMLESS:
                 self._no_feature(element, metaclass, name.rpartition(" ")[2])
 
@@ -275,7 +275,7 @@ class XmiReader:
         else:
             type(element)._mmrs_slots[feature.attribute].__set__(element, value)
         if feature.is_id:
-            self._identify(element, text, own=True)
+            self._draft.identify(element, text, self._document.line, own=True)
 
     def _value_ends(self, element: Element, feature: Feature) -> None:
         text = "".join(self._text)
@@ -291,14 +291,6 @@ class XmiReader:
         else:
             self._leave_blank(element, feature)
         self._nil = False
-
-    def _identify(self, element: Element, identifier: str, own: bool) -> None:
-        other = self._draft.ids.setdefault(identifier, element)
-        if other is not element:
-            message = f"{identifier}: an id used twice; first on line {other._mmrs_line}"
-            self._fault("XMI012", message, element)
-        elif not own:
-            self._draft.source.ids[element] = identifier
 
     # faults
 
@@ -322,9 +314,7 @@ class XmiReader:
         hint: str = "",
         broken: Feature | None = None,
     ) -> None:
-        self._draft.fault(code, message, self._document.line, element, hint)
-        if element is not None and broken is not None:
-            self._draft.broken.add((element, broken.name))
+        self._draft.fault(code, message, self._document.line, element, hint, broken)
 
     def _keep(self) -> None:
         if self._kept is None:

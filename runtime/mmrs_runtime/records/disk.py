@@ -1,4 +1,4 @@
-"""Writes files to the disk in a thread of its own, while their writers continue."""
+"""Writes files to the disk: in a thread of its own, while their writers continue; and secrets, whole."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
+    from pathlib import Path
 
 Kept = Callable[[OSError | None], None]
 """Is called once something is on the disk, or with why it is not; from another thread."""
@@ -30,6 +31,23 @@ def sync(file: IO[bytes], kept: Kept) -> Future[None]:
         OSError: there are too many open files.
     """
     return _thread().submit(_synced, os.dup(file.fileno()), str(file.name), kept)
+
+
+def write_secret(path: Path, content: bytes) -> None:
+    """Write a file that only its owner may read, whole or not at all.
+
+    Raises:
+        OSError: it cannot be written; it is as before then.
+    """
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        part.replace(path)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def _synced(handle: int, name: str, kept: Kept) -> None:

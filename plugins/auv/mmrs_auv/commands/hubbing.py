@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import signal
-import sys
-import threading
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -14,6 +12,7 @@ from typing import TextIO
 
 from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.hub import Hub, Troubles, log_line
+from mmrs_core.cli.typed import listen
 from mmrs_core.errors import LinkLostError
 
 ORDERS = "loss SHARE, delay SECONDS, corruption SHARE, cut, clear, quit"
@@ -88,7 +87,8 @@ async def _run(
         elif line:
             say(_done(hub, usual, line))
 
-    _listen(lambda line: loop.call_soon_threadsafe(order, line.strip()))
+    # Once the hub has ended, its loop raises RuntimeError.
+    listen(lambda line: loop.call_soon_threadsafe(order, line.strip()))
     with suppress(TimeoutError):
         await asyncio.wait_for(ended.wait(), seconds or None)
     await hub.stop()
@@ -110,17 +110,3 @@ def _done(hub: Hub, usual: Troubles, line: str) -> str:
         return f"{line}: {error}"
     now = hub.troubles
     return f"loss {now.loss:g}, delay {now.delay:g} s, corruption {now.corruption:g}"
-
-
-def _listen(received: Callable[[str], object]) -> None:
-    """Carry out every line that is typed."""
-
-    def read() -> None:
-        with suppress(OSError, RuntimeError):  # in the background of a terminal, or when the hub has ended
-            for line in sys.stdin:
-                received(line)
-
-    if hasattr(signal, "SIGTTIN"):
-        signal.signal(signal.SIGTTIN, signal.SIG_IGN)
-    if sys.stdin is not None and not sys.stdin.closed:
-        threading.Thread(target=read, name="typed lines", daemon=True).start()

@@ -19,6 +19,8 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.records.disk import write_secret
+
 KEY_BYTES = 32
 EPOCH = 1_420_070_400
 """Seconds from 1970 to 2015, from when signatures count."""
@@ -140,14 +142,7 @@ class Signer:
             sent = max(sent, others_sent)
             for stream, stamp in others_heard.items():
                 received[stream] = max(stamp, received.get(stream, 0))
-        draft = path.with_name(f"{path.name}.{os.getpid()}.part")
-        try:
-            with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-                json.dump({"sent": sent, "heard": received}, file)
-            draft.replace(path)
-        except BaseException:
-            draft.unlink(missing_ok=True)
-            raise
+        write_secret(path, json.dumps({"sent": sent, "heard": received}).encode())
 
 
 class Signed(mavlink.MAVLink):  # type: ignore[misc]  # pymavlink is not typed

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import degrees
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions import runs
-from mmrs_core.contributions.runs import STRAIGHT_DEGREES, turn_degrees
+from mmrs_core.contributions.runs import STRAIGHT_DEGREES
+from mmrs_core.scene.headings import turn_at
 from mmrs_mavlink.plugin.context import VehicleContext
 
 CORNER_SECONDS = 1.0
@@ -49,6 +51,6 @@ def _holds(robot: RobotProgram, moves: tuple[int, ...]) -> tuple[float, ...]:
         assert before is not None
         assert here is not None
         assert after is not None
-        if turn_degrees(before, here, after) <= STRAIGHT_DEGREES:
+        if degrees(turn_at(before, here, after)) <= STRAIGHT_DEGREES:
             holds[index] = 0.0
     return tuple(holds)

@@ -9,7 +9,6 @@ or the gateway dies, the other robots lose the robot.
 from __future__ import annotations
 
 import json
-import os
 import secrets
 import socket
 import threading
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ...callers import Callers
+from ...records.disk import write_secret
 from ..messages import LARGEST, LONGEST, Unreadable, number_in, object_in, text_in
 from ..node import Node
 from ..owners import Recorded
@@ -81,7 +81,7 @@ class Gateway:
         self._file = folder / FILE
         self._session: Session | None = None
         self._closed, self._seat = threading.Event(), threading.Lock()
-        _write_secret(self._file, {"port": self.port, "token": self.token, "robot": robot})
+        write_secret(self._file, _written({"port": self.port, "token": self.token, "robot": robot}))
 
     def serve(self, say: Callable[[str], None]) -> None:
         """Serve one program after the other, until `close` is called.
@@ -240,15 +240,3 @@ def _send(connection: socket.socket, content: Mapping[str, object]) -> None:
 
 def _written(content: Mapping[str, object]) -> bytes:
     return json.dumps(content).encode() + b"\n"
-
-
-def _write_secret(path: Path, content: Mapping[str, object]) -> None:
-    part = path.with_suffix(".part")
-    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    try:
-        with os.fdopen(handle, "w", encoding="ascii") as file:
-            file.write(json.dumps(content) + "\n")
-        part.replace(path)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise

@@ -14,7 +14,8 @@ from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, FEEDBACK, NOTI
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.plan_moves import MOVES, above_surface, context_of, vehicleless
-from mmrs_core.scene import Name, Policy
+from mmrs_core.generation.plan_refusals import policy_words
+from mmrs_core.scene import Name
 
 SORTS: Mapping[Name, str] = {**MOVES, (BEHAVIOUR, "Recharge"): "charge"}
 """Sorts of moves by their own metaclass."""
@@ -35,7 +36,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
             continue
         for policy in declared(robot, input):
             if why := obstacles_to(policy):
-                yield f"robot '{robot.id}': {_described(policy)}: {why}"
+                yield f"robot '{robot.id}': {policy_words(policy)}: {why}"
         step = depth_step_of(robot, input)
         for index, move in enumerate(robot.moves):
             for why in _of_move(move, context, step):
@@ -43,7 +44,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
             transition = robot.transitions.get(index)
             for policy in transition.policies if transition is not None else ():
                 if why := obstacles_to(policy):
-                    yield f"{context.label(move)}: {_described(policy)}: {why}"
+                    yield f"{context.label(move)}: {policy_words(policy)}: {why}"
 
 
 def is_diver(robot: RobotProgram, input: TargetInput) -> bool:
@@ -130,8 +131,3 @@ def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:
             yield f"heading of a {move.kind}"
     for action in (*move.before, *move.after):
         yield from of_action(action, context)
-
-
-def _described(policy: Policy) -> str:
-    after = "" if policy.after is None else f" after {policy.after:g} s"
-    return f"policy {policy.event}{after}: {policy.response}"

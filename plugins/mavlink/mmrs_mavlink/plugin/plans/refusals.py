@@ -9,6 +9,7 @@ from mmrs_core.behaviour.earth import LOCAL, at_a_pole, sea_level_of
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import homeless
+from mmrs_core.generation.plan_refusals import policy_words
 from mmrs_core.generation.python.moves import losses_of, mount_of, objects_of
 from mmrs_core.generation.safety import explicit, policies_of
 from mmrs_core.scene import Policy
@@ -47,7 +48,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if fault := autopilot_fault(input.types.get(robot.type_name), input.extensions):
         yield f"robot '{robot.id}': {fault}"
     for policy in _declared(robot, input):
-        yield f"robot '{robot.id}': {_described(policy)}"
+        yield f"robot '{robot.id}': {_refused(policy)}"
     context = context_of(robot, input)
     yield from _coming_round(robot, context)
     flight = flown(context)
@@ -72,7 +73,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
                 " vehicle stays here until an operator takes over"
             )
         for policy in transition.policies if transition is not None else ():
-            yield f"{context.label(move)}: {_described(explicit(policy))}"
+            yield f"{context.label(move)}: {_refused(explicit(policy))}"
 
 
 def _above_water(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
@@ -108,9 +109,8 @@ def _declared(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
     return policies_of(robot, replace(input, robot_kinds={}))
 
 
-def _described(policy: Policy) -> str:
-    after = "" if policy.after is None else f" after {policy.after:g} s"
-    return f"policy {policy.event}{after}: {policy.response}, which only settings of the vehicle can do"
+def _refused(policy: Policy) -> str:
+    return f"{policy_words(policy)}, which only settings of the vehicle can do"
 
 
 def _of_action(action: Action, move: Move, context: VehicleContext) -> Iterator[str]:
