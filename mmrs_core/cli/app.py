@@ -12,7 +12,7 @@ import typer
 from mmrs_core.cli.completion import is_completing, words_to_complete
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, QUIET_MIGRATION, Settings
-from mmrs_core.contributions.commands import CORE_COMMANDS, Command
+from mmrs_core.contributions.commands import CORE_COMMANDS, CORE_GROUPS, CORE_NAMES, Command
 from mmrs_core.errors import PluginError
 
 _HELP = "Plan, verify and run missions of multi-robot teams."
@@ -20,60 +20,6 @@ _EPILOG = (
     "Exit codes: 0 success, 1 invalid model or failed mission, 2 usage error, 3 file not readable or "
     "writable, "
     "4 no feasible plan, 5 link or robot lost, 130 interrupted."
-)
-_COMMANDS = (
-    Command("demo", "Run an example end to end.", "mmrs_core.cli.demo:demo"),
-    Command("new", "Make a new mission that can be planned at once.", "mmrs_core.cli.new:new"),
-    Command(
-        "import",
-        "Import drawings of map programs into a project.",
-        "mmrs_core.cli.importing:import_drawings",
-    ),
-    Command(
-        "validate",
-        "Validate the models of a mission.",
-        "mmrs_core.cli.validate:validate",
-    ),
-    Command("plan", "Plan a mission and write the robots' behaviour.", "mmrs_core.cli.plan:plan"),
-    Command("check", "Verify the safety of a behaviour.", "mmrs_core.cli.check:check"),
-    Command("generate", "Generate controller code for every robot.", "mmrs_core.cli.generate:generate"),
-    Command("explain", "Trace a generated line to its move.", "mmrs_core.cli.explain:explain"),
-    Command(
-        "simulate",
-        "Simulate a behaviour faster than real time.",
-        "mmrs_core.cli.simulate:simulate",
-    ),
-    Command("run", "Run a behaviour on real or simulated vehicles.", "mmrs_core.cli.live:run"),
-    Command("control", "Send a command to running robots.", "mmrs_core.cli.control:control"),
-    Command(
-        "replay",
-        "Check the logs of a run against its behaviour.",
-        "mmrs_core.cli.replay:replay",
-    ),
-    Command("report", "Write a flight report as HTML.", "mmrs_core.cli.report:report"),
-    Command(
-        "preview",
-        "Draw a mission's map, timeline and altitude profile.",
-        "mmrs_core.cli.preview:preview",
-    ),
-    Command(
-        "export",
-        "Export to QGIS, Google Earth and other map programs.",
-        "mmrs_core.cli.export:export",
-    ),
-    Command("show", "Print a model, or one element, as a tree.", "mmrs_core.cli.show:show"),
-    Command(
-        "convert",
-        "Convert models between XMI and JSON.",
-        "mmrs_core.cli.convert:convert",
-    ),
-    Command("diff", "Compare two models.", "mmrs_core.cli.diff:diff"),
-)
-"""The help of all together imports none of them: each line is the first of the command's own help."""
-_GROUPS = (
-    Command("plugin", "List and create plug-ins.", "mmrs_core.cli.plugin:app"),
-    Command("metamodel", "Inspect and export the metamodels.", "mmrs_core.cli.metamodel:app"),
-    Command("bus", "Synchronise slots between machines.", "mmrs_core.cli.bus:app"),
 )
 
 
@@ -108,9 +54,9 @@ def program_for(name: str, arguments: Sequence[str], settings: Settings) -> Comm
         return CommandLine(_generating(called))
     app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
     app.callback()(_global_options)
-    _add_commands(app, _COMMANDS, called)
-    source = "" if called in CORE_COMMANDS else _add_plugin_commands(app, settings, called)
-    _add_commands(app, _GROUPS, called)
+    _add_commands(app, CORE_COMMANDS, called)
+    source = "" if called in CORE_NAMES else _add_plugin_commands(app, settings, called)
+    _add_commands(app, CORE_GROUPS, called)
     return CommandLine(app, source)
 
 
@@ -118,7 +64,7 @@ def _generating(called: str | None) -> typer.Typer:
     """Return the application ``mmrs-gen``: the command ``generate``, or a group with ``explain`` alone."""
     app = typer.Typer(rich_markup_mode=None)
     command = next(
-        each for each in _COMMANDS if each.name == ("explain" if called == "explain" else "generate")
+        each for each in CORE_COMMANDS if each.name == ("explain" if called == "explain" else "generate")
     )
     app.command(command.name)(_imported(command))
     if called == "explain":

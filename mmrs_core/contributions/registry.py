@@ -9,7 +9,7 @@ from functools import cached_property
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mmrs_core.contributions.commands import CORE_COMMANDS, Command
+from mmrs_core.contributions.commands import CORE_NAMES, Command
 from mmrs_core.errors import PluginError, UnreadableError
 
 if TYPE_CHECKING:
@@ -239,7 +239,7 @@ class Contributions:
     def commands(self) -> tuple[Command, ...]:
         """Return the commands that plug-ins add."""
         for plugin, command in self._declared("commands"):
-            if command.name in CORE_COMMANDS:
+            if command.name in CORE_NAMES:
                 raise PluginError(f"command '{command.name}': contributed by both 'core' and '{plugin}'")
         return tuple(self._by("commands", lambda command: command.name).values())
 

@@ -11,7 +11,7 @@ from mmrs_core.cli import run
 from mmrs_core.cli.app import program_for
 from mmrs_core.cli.running import take_as_typed
 from mmrs_core.cli.settings import Settings
-from mmrs_core.contributions.commands import CORE_COMMANDS
+from mmrs_core.contributions.commands import CORE_NAMES
 
 
 def commands_in(name, *, as_typed):
@@ -32,7 +32,7 @@ def coerced(parameter, value):
         return error.format_message()
 
 
-@pytest.mark.parametrize("name", sorted(CORE_COMMANDS))
+@pytest.mark.parametrize("name", sorted(CORE_NAMES))
 def test_every_parameter_gets_what_typer_gives(name, tmp_path):
     both = (commands_in(name, as_typed=as_typed) for as_typed in (False, True))
     for theirs, ours in zip(*both, strict=True):

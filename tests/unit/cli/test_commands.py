@@ -12,13 +12,13 @@ import typer
 from mmrs_core.cli import run
 from mmrs_core.cli.app import program_for
 from mmrs_core.cli.settings import Settings
-from mmrs_core.contributions.commands import CORE_COMMANDS, Command
+from mmrs_core.contributions.commands import CORE_NAMES, Command
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
 from mmrs_core.plugins import load_plugins
 
-CORE = sorted(CORE_COMMANDS)
+CORE = sorted(CORE_NAMES)
 
 
 class Kites:
@@ -265,7 +265,7 @@ def test_a_plugin_command_that_fails_names_the_plugin(
 
 def test_no_plugin_can_have_a_name_of_the_core():
     own = typer.main.get_command(program_for("mmrs", ["--help"], Settings(only_core=True)).app)
-    assert own.commands.keys() == CORE_COMMANDS
+    assert own.commands.keys() == CORE_NAMES
 
 
 class Usurper:
