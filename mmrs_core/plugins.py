@@ -14,7 +14,7 @@ import pluggy
 from mmrs_core import builtin, hookspecs
 from mmrs_core.contributions.guard import guarded
 from mmrs_core.contributions.hooks import Hook
-from mmrs_core.contributions.registry import Contributions, called
+from mmrs_core.contributions.registry import CORE_HOOKS, Contributions, called
 from mmrs_core.errors import PluginError
 
 if TYPE_CHECKING:
@@ -23,30 +23,6 @@ if TYPE_CHECKING:
 
 GROUP = "mmrs.plugins"
 _CORE = builtin.__name__
-_KINDS: Mapping[str, str] = {
-    "metamodels": "languages.sources.MetamodelSource",
-    "element_classes": "languages.classes.ElementClass",
-    "migrations": "languages.evolution.migration.Migration",
-    "importers": "languages.importers.Importer",
-    "constraints": "contributions.constraints.Constraint",
-    "fixes": "contributions.fixes.Fix",
-    "rules": "contributions.rules.Rule",
-    "robot_kinds": "contributions.rules.RobotKind",
-    "vehicle_timings": "contributions.timing.VehicleTiming",
-    "move_kinds": "contributions.rules.MoveKind",
-    "element_kinds": "contributions.rules.ElementKind",
-    "checks": "contributions.checks.Check",
-    "targets": "contributions.targets.Target",
-    "vehicles": "contributions.vehicles.VehicleFactory",
-    "conditions": "contributions.execution.Condition",
-    "map_symbols": "contributions.symbols.MapSymbol",
-    "robot_types": "contributions.robot_types.RobotTypeFile",
-    "drawing_readers": "contributions.drawings.DrawingReader",
-    "exporters": "contributions.drawings.Exporter",
-    "hooks": "contributions.hooks.Hook",
-    "commands": "contributions.commands.Command",
-}
-"""What each sort of contribution is, within this package."""
 _GONE: Mapping[str, str] = {
     "mmrs_dialects": "implement 'mmrs_importers'",
     "mmrs_backends": "implement 'mmrs_vehicles'",
@@ -120,7 +96,7 @@ def load_plugins(
 
     @cache
     def declared(sort: str) -> tuple[tuple[str, Any], ...]:
-        return tuple(_declared(manager, distributions, sort, hooks.get(sort)))
+        return tuple(_declared(manager, distributions, hooks.get(sort) or CORE_HOOKS[sort]))
 
     contributions = Contributions(declared, distributions, quiet_migration=quiet_migration)
     return Plugins(contributions, distributions, manager)
@@ -178,9 +154,9 @@ def _register(manager: pluggy.PluginManager, name: str, distribution: str, plugi
 def _specified(manager: pluggy.PluginManager, distributions: Mapping[str, str]) -> dict[str, Hook]:
     """Add the hooks that plug-ins specify; return them by what they declare, such as ``kite_lines``."""
     found: dict[str, Hook] = {}
-    for name, hook in _declared(manager, distributions, "hooks"):
+    for name, hook in _declared(manager, distributions, CORE_HOOKS["hooks"]):
         source = f"plug-in '{name}' of distribution '{distributions[name]}'"
-        if hook.sort in _KINDS or hook.sort in found:
+        if hook.sort in CORE_HOOKS or hook.sort in found:
             raise PluginError(f"{source}: hook '{hook.name}' is specified already")
 
         @hookspecs.hookspec
@@ -213,33 +189,30 @@ def _refuse_unknown(manager: pluggy.PluginManager, distributions: Mapping[str, s
 
 
 def _declared(
-    manager: pluggy.PluginManager, distributions: Mapping[str, str], sort: str, specified: Hook | None = None
+    manager: pluggy.PluginManager, distributions: Mapping[str, str], hook: Hook
 ) -> Iterator[tuple[str, Any]]:
-    """Yield what plug-ins declare by a hook; `specified`: None for one of the core's."""
-    hook = getattr(manager.hook, f"mmrs_{sort}")
-    kind = _kind(sort, specified)
-    for implementation in sorted(hook.get_hookimpls(), key=lambda each: each.plugin_name):
+    """Yield what plug-ins declare by a hook."""
+    kind = _kind(hook)
+    implementations = getattr(manager.hook, hook.name).get_hookimpls()
+    for implementation in sorted(implementations, key=lambda each: each.plugin_name):
         name = implementation.plugin_name
         try:
             items = tuple(implementation.function())
         except Exception as error:
             raise PluginError(
-                f"plug-in '{name}' of distribution '{distributions[name]}': mmrs_{sort} fails: {error!r}"
+                f"plug-in '{name}' of distribution '{distributions[name]}': {hook.name} fails: {error!r}"
             ) from error
         source = f"plug-in '{name}' of distribution '{distributions[name]}'"
         for item in items:
             if not isinstance(item, kind):
                 raise PluginError(
-                    f"{source}: mmrs_{sort} gives a {type(item).__name__}, not a {kind.__name__}"
+                    f"{source}: {hook.name} gives a {type(item).__name__}, not a {kind.__name__}"
                 )
-            shown = getattr(item, specified.key) if specified is not None else None
-            yield name, item if name == "core" else guarded(item, f"{source}: {called(sort, item, shown)}")
+            yield name, item if name == "core" else guarded(item, f"{source}: {called(hook, item)}")
 
 
-def _kind(sort: str, specified: Hook | None = None) -> type:
+def _kind(hook: Hook) -> type:
     """Return what a hook declares; imported now, since no command needs every sort."""
-    module, _, name = (
-        specified.descriptor.partition(":") if specified else f"mmrs_core.{_KINDS[sort]}".rpartition(".")
-    )
+    module, _, name = hook.descriptor.partition(":")
     kind: type = getattr(import_module(module), name)
     return kind

@@ -10,6 +10,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mmrs_core.contributions.commands import CORE_NAMES, Command
+from mmrs_core.contributions.hooks import Hook
 from mmrs_core.errors import PluginError, UnreadableError
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.drawings import DrawingReader, Exporter
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
-    from mmrs_core.contributions.hooks import Extensions, Hook
+    from mmrs_core.contributions.hooks import Extensions
     from mmrs_core.contributions.robot_types import RobotTypeFile
     from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
@@ -39,29 +40,33 @@ _CODE = re.compile("[A-Z]{2,}[0-9]{3}")
 
 Declared = Callable[[str], "Iterable[tuple[str, Any]]"]
 
-_SHOWN: Mapping[str, Callable[[Any], object]] = {
-    "metamodels": lambda source: source.ns_uri,
-    "element_classes": lambda given: "#//".join(given.metaclass),
-    "migrations": lambda migration: f"{migration.from_uri} to {migration.to_uri}",
-    "importers": lambda importer: importer.name,
-    "constraints": lambda constraint: constraint.code,
-    "fixes": lambda fix: fix.code,
-    "rules": lambda rule: rule.name,
-    "robot_kinds": lambda kind: kind.name,
-    "vehicle_timings": lambda timing: timing.vehicle,
-    "move_kinds": lambda kind: "#//".join(kind.metaclass),
-    "element_kinds": lambda kind: "#//".join(kind.metaclass),
-    "checks": lambda check: check.name,
-    "targets": lambda target: target.name,
-    "vehicles": lambda vehicle: vehicle.name,
-    "conditions": lambda condition: condition.identifier,
-    "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
-    "robot_types": lambda given: given.name,
-    "drawing_readers": lambda reader: reader.name,
-    "exporters": lambda exporter: exporter.name,
-    "hooks": lambda hook: hook.name,
-    "commands": lambda command: command.name,
+CORE_HOOKS: Mapping[str, Hook] = {
+    sort: Hook(f"mmrs_{sort}", "", f"mmrs_core.{descriptor}", key)
+    for sort, descriptor, key in (
+        ("metamodels", "languages.sources:MetamodelSource", "ns_uri"),
+        ("element_classes", "languages.classes:ElementClass", "metaclass"),
+        ("migrations", "languages.evolution.migration:Migration", "step"),
+        ("importers", "languages.importers:Importer", "name"),
+        ("constraints", "contributions.constraints:Constraint", "code"),
+        ("fixes", "contributions.fixes:Fix", "code"),
+        ("rules", "contributions.rules:Rule", "name"),
+        ("robot_kinds", "contributions.rules:RobotKind", "name"),
+        ("vehicle_timings", "contributions.timing:VehicleTiming", "vehicle"),
+        ("move_kinds", "contributions.rules:MoveKind", "metaclass"),
+        ("element_kinds", "contributions.rules:ElementKind", "metaclass"),
+        ("checks", "contributions.checks:Check", "name"),
+        ("targets", "contributions.targets:Target", "name"),
+        ("vehicles", "contributions.vehicles:VehicleFactory", "name"),
+        ("conditions", "contributions.execution:Condition", "identifier"),
+        ("map_symbols", "contributions.symbols:MapSymbol", "metaclass"),
+        ("robot_types", "contributions.robot_types:RobotTypeFile", "name"),
+        ("drawing_readers", "contributions.drawings:DrawingReader", "name"),
+        ("exporters", "contributions.drawings:Exporter", "name"),
+        ("hooks", "contributions.hooks:Hook", "name"),
+        ("commands", "contributions.commands:Command", "name"),
+    )
 }
+"""The hooks of the core, by sort of what they declare; their descriptions are in `hookspecs`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,12 +250,10 @@ class Contributions:
 
     def catalogue(self) -> tuple[Contribution, ...]:
         """Return who contributed what, sorted by plug-in, sort and name."""
-        of_plugins: Mapping[str, Callable[[Any], object]]
-        of_plugins = {hook.sort: attrgetter(hook.key) for hook in self.hooks.values()}
         found = (
-            Contribution(plugin, sort, str(shown(item)))
-            for sort, shown in {**_SHOWN, **of_plugins}.items()
-            for plugin, item in self._declared(sort)
+            Contribution(plugin, hook.sort, _shown(hook, item))
+            for hook in (*CORE_HOOKS.values(), *self.hooks.values())
+            for plugin, item in self._declared(hook.sort)
         )
         return tuple(sorted(found, key=lambda each: (each.plugin, each.sort, each.name)))
 
@@ -260,7 +263,7 @@ class Contributions:
 
     def source_of(self, sort: str, item: object) -> str:
         """Return plug-in, distribution and name of a descriptor, for messages about its failures."""
-        return f"{self._whose(self._plugin_of(sort, item))}: {called(sort, item)}"
+        return f"{self._whose(self._plugin_of(sort, item))}: {called(CORE_HOOKS[sort], item)}"
 
     def check(self) -> None:
         """Look at every sort of contribution.
@@ -268,7 +271,7 @@ class Contributions:
         Raises:
             PluginError: if a plug-in is broken, or two conflict.
         """
-        for sort in ("languages", *_SHOWN, "extensions"):
+        for sort in ("languages", *CORE_HOOKS, "extensions"):
             getattr(self, sort)
 
     def _whose(self, plugin: str) -> str:
@@ -292,15 +295,20 @@ class Contributions:
             try:
                 self.languages.metaclass(ns_uri, name)
             except ValueError as error:
-                raise PluginError(f"plug-in '{plugin}': {called(sort, item)}: {error}") from error
+                raise PluginError(f"plug-in '{plugin}': {called(CORE_HOOKS[sort], item)}: {error}") from error
 
     def _by(self, sort: str, key: Callable[[Any], Key]) -> dict[Key, Any]:
         return by_key(sort, self._declared(sort), key)
 
 
-def called(sort: str, item: object, shown: str | None = None) -> str:
-    """Return what messages call a descriptor, such as ``rule 'wave'``; `shown`: its key, else the core's."""
-    return f"{_singular(sort)} '{_SHOWN[sort](item) if shown is None else shown}'"
+def called(hook: Hook, item: object) -> str:
+    """Return what messages call a descriptor, such as ``rule 'wave'``."""
+    return f"{_singular(hook.sort)} '{_shown(hook, item)}'"
+
+
+def _shown(hook: Hook, item: object) -> str:
+    key = getattr(item, hook.key)
+    return "#//".join(key) if isinstance(key, tuple) else str(key)
 
 
 def _singular(sort: str) -> str:

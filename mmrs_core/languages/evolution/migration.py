@@ -51,6 +51,11 @@ class Migration:
     rewrite: Callable[[Node], None] | None = None
     rewrite_holder: Callable[[Node, Refer], None] | None = None
 
+    @property
+    def step(self) -> str:
+        """Return from which version it leads to which."""
+        return f"{self.from_uri} to {self.to_uri}"
+
     def __post_init__(self) -> None:
         """Refuse names of features that name no class.
 

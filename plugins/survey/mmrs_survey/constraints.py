@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from mmrs_core.analysis.constraints.ranges import share
+from mmrs_core.analysis.fixes.figures import as_part
 from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.diagnostics import Severity
 from mmrs_core.planning.limits import MOST
 from mmrs_survey import names
@@ -213,3 +215,5 @@ CONSTRAINTS = (
         "remove it: the robot goes when others need it, and stays for as long as they do",
     ),
 )
+
+FIXES = (Fix("SUR003", "write the overlaps as parts of one", as_part(*OVERLAPS)),)

@@ -36,7 +36,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
     """Contribute the fix of overlaps in per cent."""
-    from mmrs_survey.fixes import FIXES
+    from mmrs_survey.constraints import FIXES
 
     return FIXES
 

@@ -16,8 +16,8 @@ from mmrs_core.cli.behaviours import Loaded, load_behaviour
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.passages import runs_of
 from mmrs_core.contributions.rules import RobotKind
-from mmrs_core.contributions.runs import runs_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.generation.planned_moves import planned_moves

@@ -18,6 +18,7 @@ from mmrs_core.contributions.drawings import DrawingReader, Exporter
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.hooks import Hook
+from mmrs_core.contributions.registry import CORE_HOOKS
 from mmrs_core.contributions.robot_types import RobotTypeFile
 from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
@@ -83,7 +84,7 @@ def test_what_a_hook_declares_is_what_its_signature_says():
         for name, hook in inspect.getmembers(hookspecs, inspect.isfunction)
         if name.startswith("mmrs_") and not inspect.signature(hook).parameters
     }
-    kinds = {f"mmrs_{sort}": f"Iterable[{plugins._kind(sort).__name__}]" for sort in plugins._KINDS}
+    kinds = {hook.name: f"Iterable[{plugins._kind(hook).__name__}]" for hook in CORE_HOOKS.values()}
     assert kinds == declaring
 
 

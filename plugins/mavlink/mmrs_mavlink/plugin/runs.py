@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from math import degrees
 
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.contributions import runs
-from mmrs_core.contributions.runs import STRAIGHT_DEGREES
+from mmrs_core.contributions import passages
+from mmrs_core.contributions.passages import STRAIGHT_DEGREES
 from mmrs_core.scene.headings import turn_at
 from mmrs_mavlink.plugin.context import VehicleContext
 
@@ -37,7 +37,7 @@ def runs_of(context: VehicleContext, turning_radius: float = 0.0) -> tuple[MoveR
     """
     if context.frame.is_local:
         return ()
-    found = runs.runs_of(context.robot, context.moves)
+    found = passages.runs_of(context.robot, context.moves)
     if turning_radius > 0.0:
         return tuple(MoveRun(moves, (*(0.0 for _ in moves[1:]), CORNER_SECONDS)) for moves in found)
     return tuple(MoveRun(moves, _holds(context.robot, moves)) for moves in found)
