@@ -25,7 +25,7 @@ from mmrs_core.scene import Name
 class Range:
     """The check that features lie in a range; the bounds belong to it unless they are said to be excluded.
 
-    What is no finite number is for the conformance to the metamodel.
+    Values that are not finite are breaches of the metamodel, and reported as such.
     """
 
     features: tuple[str, ...]
