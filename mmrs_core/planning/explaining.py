@@ -125,7 +125,7 @@ def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanat
 
 class _Explaining:
     def __init__(self, scene: Scene, plan: Plan, timed: Plan) -> None:
-        self._makespan = plan.makespan
+        self._whole_scene, self._whole = scene, plan
         scene, plan = without_relays(scene, plan)
         self._scene, self._plan, self._timed, self._jobs = scene, plan, timed, jobs_of(scene)
         self._groups = _groups(plan)
@@ -263,7 +263,7 @@ class _Explaining:
         if scene.stations:
             names = ", ".join(f"'{station.name}'" for station in scene.stations)
             words = f"robots wait for {names}, which come home last{', and keep apart' if apart else ''}"
-            yield Limit("relays", self._makespan - max(self._ends), words)
+            yield Limit("relays", self._whole.makespan - max(self._ends), words)
         elif apart:
             words = f"robots keep {scene.minimum_separation:g} m apart"
             yield Limit("separation", self._plan.makespan - max(self._ends), words)
@@ -307,16 +307,17 @@ class _Explaining:
 
     def _charge(self) -> str:
         """Return which sortie is nearest to its limit, in words; empty where there is no limit."""
-        most = most_used(self._plan, self._team.pilots)
+        pilots = Team(self._whole_scene).pilots if self._scene.stations else self._team.pilots
+        most = most_used(self._whole, pilots)
         used = [
             (most[each.robot] / allowed, each.robot)
-            for each in self._plan.robots
-            if each.steps and (allowed := allowed_by_charge(self._team.pilots[each.robot])) < inf
+            for each in self._whole.robots
+            if each.steps and (allowed := allowed_by_charge(pilots[each.robot])) < inf
         ]
         if not used:
             return ""
         share, robot = max(used)
-        pilot = self._team.pilots[robot]
+        pilot = pilots[robot]
         part = f"{most[robot]:.0f} of the {allowed_by_charge(pilot):.0f} s of a charge{kept_of_charge(pilot)}"
         return f"'{robot}' uses up to {part} ({100.0 * share:.0f} %)"
 

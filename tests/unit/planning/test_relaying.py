@@ -233,6 +233,8 @@ def test_an_explanation_says_what_waiting_for_the_relay_costs():
     found = explain(whole, plan(whole))
     (limit,) = [each for each in found.limits if each.name == "relays"]
     assert limit.cost > 40.0
+    (charge,) = [each for each in found.limits if each.name == "charge"]
+    assert charge.margin.startswith("'c' uses up to ")
     assert [each.task for each in found.tasks] == ["far"]
 
 
