@@ -126,15 +126,20 @@ def test_chains_lead_over_relays_of_the_context_and_robots():
 
 
 def test_a_relay_counts_only_if_it_comes_to_its_place_in_every_run():
-    there = go("there", MIDDLE, after=(notify("a.ready"),))
-    other = go("elsewhere", (50.0, 0.0, 0.0), after=(notify("a.ready"),))
-    moves = [hold("ask", 0.0), there, other, hold("stay", 0.0), go("leave", HOME)]
+    """On both branches it tells a, and waits until it is told; on one of them it is not where a needs it."""
+    ready = (notify("a.ready"),)
+    moves = [
+        hold("ask", 0.0),
+        *(go("there", MIDDLE, after=ready), hold("stay", 0.0)),
+        *(go("elsewhere", (50.0, 0.0, 0.0), after=ready), hold("stay there", 0.0)),
+        go("leave", HOME),
+    ]
     choosing = carrier(
         "r",
         moves,
         choices={"ask": ("windy", "there", "elsewhere")},
-        jumps={"there": "stay"},
-        waits={"stay": ("back",)},
+        jumps={"stay": "leave"},
+        waits={"stay": ("back",), "stay there": ("back",)},
     )
     assert judged(user(), choosing).status is Status.VIOLATED
 
