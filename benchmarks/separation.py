@@ -2,8 +2,9 @@
 
 The peer builds an STRtree of (east, time) rectangles, filters by the other coordinates, and computes the
 closest approach of the pairs that are left; both must find the same pairs. Seconds are of CPU, the least of
-five runs of each in turn; what numba compiles is compiled before. `check` is the independent check's search
-for pairs that it looks at more closely: their paths come too near, and their times overlap.
+five runs of each in turn; what numba compiles is compiled before. `check` is the search of the independent
+check, which shares no code with the planner's: compiled loops find boxes that overlap where there are as many
+pieces as in the last line, an STRtree of slices of time where there are fewer.
 
     python benchmarks/separation.py --seed 1 > benchmarks/results/separation.txt
 """

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
-from math import floor
+from itertools import chain, product
+from math import floor, inf
+from operator import itemgetter
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
@@ -34,6 +35,7 @@ from mmrs_core.planning.separation import (
     stacked_altitudes,
     starting_later,
 )
+from mmrs_core.planning.signalling import signalled
 from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.scene import Plan, Scene
 
@@ -42,6 +44,14 @@ class _Find(Protocol):
     """Returns the best decisions found for a team, with their schedule."""
 
     def __call__(self, team: Team, *, in_turns: bool) -> tuple[Decisions, Schedule | Shortfall]: ...
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """How decisions are found, and the plans so far whose robots are kept apart at a cost, if at all."""
+
+    find: _Find
+    dear: list[tuple[Team, Plan]]
 
 
 def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
@@ -74,20 +84,34 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     find = partial(find_decisions, jobs=jobs, effort=effort)
     best: Mapping[str, int] = {}
     found, refusal = None, InfeasibleError("no plan")
+    dear = list[tuple[Team, Plan]]()
     tries = ((wanted, partial(find, seed=seed)) for wanted in ({}, *robot_counts(team, jobs)))
     longer = ((best, partial(find, seed=seed + 1, long=True)) for _ in range(effort.timed))
-    for wanted, search in chain(tries, longer):
+    for wanted, each in chain(tries, longer):
         if found is not None and effort.over:
             break
         try:
-            made = _plan_asking(teams, wanted, jobs, search, found)
+            made = _plan_asking(teams, wanted, jobs, _Search(each, dear), found)
         except InfeasibleError as error:
             refusal = refusal if wanted else error
             continue
         found, best = made, best if made is found else wanted
+    found = _signalled(scene, dear, found)
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return replace(found, lower_bound=effort.least)
+
+
+def _signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | None) -> Plan | None:
+    """Return the best plan, or a better one in which robots wait for signals of each other to keep apart."""
+    plans = {
+        round(each.makespan, 1): (team, each) for team, each in dear if team.scene.robots == scene.robots
+    }
+    shortest = sorted(plans.items(), key=itemgetter(0))[:_MOST_SIGNALLED]
+    for (_, (team, each)), cut in product(shortest, (False, True)):
+        told = signalled(team, each, inf if found is None else found.makespan, cut=cut)
+        found = found if told is None else _better(told, found)
+    return found
 
 
 def _alone(jobs: Sequence[Job]) -> Iterator[Job]:
@@ -106,12 +130,12 @@ def _better(plan: Plan, best: Plan | None) -> Plan:
 
 
 def _plan_asking(
-    teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], find: _Find, best: Plan | None
+    teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], search: _Search, best: Plan | None
 ) -> Plan:
     shortage = InfeasibleError("no plan")
     for each in teams:
         try:
-            return _plan_with(each.wanting(wanted) if wanted else each, jobs, find, best)
+            return _plan_with(each.wanting(wanted) if wanted else each, jobs, search, best)
         except _ShortError as error:
             shortage = error
     raise shortage
@@ -154,11 +178,14 @@ class _ShortError(_UnexplainedError):
 _FEW_PAIRS = 100
 """Jobs times robots up to which a refusal is worth another whole plan."""
 
+_MOST_SIGNALLED = 2
+"""Plans, the shortest first, whose robots are then kept apart by signals."""
+
 _DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
 
 
-def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) -> Plan:
+def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | None) -> Plan:
     """Return a plan of a team, or of one like it where robots that come too near are kept apart for less.
 
     It is the best so far if that is better.
@@ -166,7 +193,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) 
     Args:
         team: as it is.
         jobs: of the scene.
-        find: returns decisions.
+        search: finds decisions.
         best: the best so far.
 
     Raises:
@@ -174,7 +201,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) 
     """
     refusal: TooNearError | None = None
     try:
-        found, made = _plan_of(team, jobs, find, best)
+        found, made = _plan_of(team, jobs, search, best)
         best = _better(made, best)
         if made.makespan <= _DEAR * found.makespan:
             return best
@@ -182,7 +209,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None) 
         refusal = error
     for other, in_turns in _alternatives(team, refusal):
         try:
-            _, made = _plan_of(other, jobs, find, best, in_turns=in_turns)
+            _, made = _plan_of(other, jobs, search, best, in_turns=in_turns)
         except _NotBetterError:
             break
         except InfeasibleError:
@@ -243,10 +270,10 @@ def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team
 
 
 def _plan_of(
-    team: Team, jobs: Sequence[Job], find: _Find, best: Plan | None, *, in_turns: bool = False
+    team: Team, jobs: Sequence[Job], search: _Search, best: Plan | None, *, in_turns: bool = False
 ) -> tuple[Plan, Plan]:
     """Return a plan as it was found, and as its robots keep apart; refuse one that is not better."""
-    decisions, found = find(team, in_turns=in_turns)
+    decisions, found = search.find(team, in_turns=in_turns)
     if isinstance(found, Shortfall):
         raise _ShortError("no plan", partial(_reasons, team, jobs, found))
     _refuse_late(team, jobs, found.spans)
@@ -256,7 +283,7 @@ def _plan_of(
     first = assemble(team, jobs, recorded)
     if _better(first, best) is best:
         raise _NotBetterError("no better plan")
-    made = _kept_apart(team, jobs, decisions, first, best)
+    made = _kept_apart(team, jobs, search, decisions, first, best)
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
     _refuse_late(team, jobs, spans)
     return first, made
@@ -282,7 +309,7 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
 
 
 def _kept_apart(
-    team: Team, jobs: Sequence[Job], decisions: Decisions, found: Plan, best: Plan | None
+    team: Team, jobs: Sequence[Job], search: _Search, decisions: Decisions, found: Plan, best: Plan | None
 ) -> Plan:
     """Return a plan as its robots keep apart: waiting on their paths or starting later, as costs less.
 
@@ -291,12 +318,14 @@ def _kept_apart(
     try:
         waiting = separated(team, found)
     except TooNearError as error:
+        search.dear.append((team, found))
         later = starting_later(team, decisions, partial(_planned_better, team, jobs, best))
         if later is None:
             raise error from None
         return later
     if waiting.makespan <= _DEAR * found.makespan:
         return waiting
+    search.dear.append((team, found))
     least = _better(waiting, best)
     return starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or waiting
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from math import dist, inf
+from math import dist, inf, nan
 
 import numpy as np
 
@@ -65,13 +65,19 @@ class TooNearError(InfeasibleError):
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Two robots that may come too near to each other: when, to how many metres, and if one is at home."""
+    """Two robots that may come too near to each other: when, to how many metres, and if one is at home.
+
+    Attributes:
+        pieces: of all that each robot takes up, the one on which that is first.
+        distance: nan where it was not asked for.
+    """
 
     first: str
     second: str
     time: float
-    distance: float
     at_home: bool
+    pieces: tuple[int, int]
+    distance: float = nan
 
 
 def distance_to_keep(scene: Scene) -> float | None:
@@ -104,12 +110,13 @@ def separated(team: Team, plan: Plan) -> Plan:
     if least is None:
         return plan
     made = _separated(team, Traffic(team.scene, plan, least))
-    if _recharges(made) and Traffic(team.scene, made, least, hasty=True).conflicts:
+    if recharges(made) and Traffic(team.scene, made, least, hasty=True).conflicts:
         made = _separated(team, Traffic(team.scene, plan, least, hasty=True))
     return made
 
 
-def _recharges(plan: Plan) -> bool:
+def recharges(plan: Plan) -> bool:
+    """Return whether a robot recharges in a plan."""
     return any(isinstance(step, Recharge) for each in plan.robots for step in each.steps)
 
 
@@ -120,7 +127,7 @@ def _separated(team: Team, traffic: Traffic) -> Plan:
         better = [each for each in options if len(each.conflicts) < len(traffic.conflicts)]
         if not better:
             homes = {robot.name: robot.home for robot in team.scene.robots}
-            raise TooNearError(first, traffic.least, homes)
+            raise TooNearError(traffic.measured(first), traffic.least, homes)
         traffic = min(better, key=lambda each: each.cost)
     return traffic.plan
 
@@ -143,7 +150,7 @@ def starting_later(
         if found is None:
             break
         traffic = Traffic(team.scene, found, least, hasty=hasty)
-        if not traffic.conflicts and not hasty and _recharges(found):
+        if not traffic.conflicts and not hasty and recharges(found):
             hasty = True
             traffic = Traffic(team.scene, found, least, hasty=True)
         if not traffic.conflicts:
@@ -162,13 +169,13 @@ def _waiting(team: Team, traffic: Traffic, conflict: Conflict) -> Iterator[Traff
             waits = traffic.waits(name, at_home=at_home)
             if waits is None:
                 break
-            other = _allowed(team, traffic, delayed(team.scene, traffic.plan, name, waits))
+            other = allowed(team, traffic, delayed(team.scene, traffic.plan, name, waits))
             if other is not None:
                 yield other
                 break
 
 
-def _allowed(team: Team, before: Traffic, plan: Plan) -> Traffic | None:
+def allowed(team: Team, before: Traffic, plan: Plan) -> Traffic | None:
     """Return the traffic of a plan that keeps times and charges; None if it does not."""
     spans = {task: (begin, plan.ends[task]) for task, begin in plan.begins.items()}
     if broken_times(team, spans):
@@ -248,15 +255,22 @@ class Traffic:
         order = np.argsort(times, kind="stable")
         first = order[np.unique(pairs[order], return_index=True)[1]]
         i, j = i[first], j[first]
-        figures = (times[first], proximity.nearest(i, j, _SPARE), proximity.at_home(i, j))
+        begins = np.searchsorted(owners, np.arange(len(self._names)))
+        own = ((each - begins[owners[each]]).tolist() for each in (i, j))
+        figures = (times[first].tolist(), proximity.at_home(i, j).tolist(), zip(*own, strict=True))
         for one, two, *rest in zip(*(owners[each].tolist() for each in (i, j)), *figures, strict=True):
-            time, distance, at_home = rest
             names = self._names[one], self._names[two]
-            yield names, Conflict(*names, float(time), float(distance), bool(at_home))
+            yield names, Conflict(*names, *rest)
 
     def earliest(self) -> Conflict:
         """Return the earliest conflict."""
         return min(self.conflicts.values(), key=lambda each: each.time)
+
+    def measured(self, conflict: Conflict) -> Conflict:
+        """Return a conflict with its distance."""
+        pieces = [self._pieces[name] for name in (conflict.first, conflict.second)]
+        i, j = (np.array([each]) for each in (conflict.pieces[0], len(pieces[0]) + conflict.pieces[1]))
+        return replace(conflict, distance=float(self._proximity(pieces).nearest(i, j, _SPARE)[0]))
 
     @property
     def cost(self) -> tuple[float, float, int]:
@@ -322,12 +336,30 @@ class Traffic:
                 shift = float(np.ceil(end))
         return shift
 
-    def waits(self, name: str, *, at_home: bool) -> dict[int, float] | None:
+    def met(self, one: str, other: str) -> list[tuple[int, int, int]]:
+        """Return where two robots may come too near: a step of the other, one of the one, and its end.
+
+        All are indices of steps; the end is that with whose begin the one's step is over.
+        """
+        numbers = self._names.index(one), self._names.index(other)
+        proximity = self._proximity([self._pieces[name] for name in (one, other)])
+        pieces = proximity.pieces
+        i, j = self._unordered(pieces, *proximity.meetings(_SPARE))
+        i, j = np.where(pieces.owners[i] == numbers[0], (i, j), (j, i))
+        found = (pieces.steps[j], pieces.steps[i], pieces.over[i])
+        return list(zip(*(each.tolist() for each in found), strict=True))
+
+    def knows(self, name: str, step: int) -> Mapping[str, int]:
+        """Return, by other robot, the step that it has begun at least when a robot begins a step."""
+        return self._timelines[name].known[step]
+
+    def waits(self, name: str, *, at_home: bool, last: int | None = None) -> dict[int, float] | None:
         """Return how long a robot must wait before its steps to keep apart from others; None: in no case.
 
         Args:
             name: of the robot.
             at_home: whether it can wait at home only.
+            last: the step up to which it must keep apart; None: to the end.
         """
         number, timeline = self._names.index(name), self._timelines[name]
         stops = pieces_of(timeline.stops, number)
@@ -348,11 +380,11 @@ class Traffic:
                 DelayedStep(
                     _united(begins, ends, here & ~standing),
                     _united(begins, ends, here & standing),
-                    _may_wait(step) and (not at_home or stop.relation is HomeRelation.HOME),
+                    may_wait(step) and (not at_home or stop.relation is HomeRelation.HOME),
                     step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
                 )
             )
-        return waits_before(found)
+        return waits_before(found if last is None else found[: last + 1])
 
 
 def _leaves(steps: Sequence[Step]) -> float:
@@ -360,7 +392,8 @@ def _leaves(steps: Sequence[Step]) -> float:
     return next((step.begin for step in steps if not isinstance(step, Await)), 0.0)
 
 
-def _may_wait(step: Step | None) -> bool:
+def may_wait(step: Step | None) -> bool:
+    """Return whether a robot can wait before a step."""
     return isinstance(step, Launch | Transit | Serve | Recover)
 
 
@@ -380,7 +413,7 @@ def _united(begins: Floats, ends: Floats, chosen: Flags) -> list[Span]:
 def first_conflict(scene: Scene, plan: Plan, least: float) -> Conflict | None:
     """Return the earliest conflict nearer than `least` metres; None if there is none."""
     traffic = Traffic(scene, plan, least)
-    return traffic.earliest() if traffic.conflicts else None
+    return traffic.measured(traffic.earliest()) if traffic.conflicts else None
 
 
 def _words(conflict: Conflict, least: float, homes: Mapping[str, Position]) -> str:

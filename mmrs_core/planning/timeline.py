@@ -235,8 +235,9 @@ class _Walk:
 
     def _transit(self, step: Transit) -> None:
         rates = self.kinematics.rates(step.speed)
-        for points in _moves_along(list(pairwise(step.route))):
-            self._go(points, rates, step.speed)
+        moves = list(moves_along(list(pairwise(step.route))))
+        for number, points in enumerate(moves):
+            self._go(points, rates, step.speed, last=number == len(moves) - 1)
         self.radius = 0.0
 
     def _serve(self, step: Serve) -> None:
@@ -258,7 +259,10 @@ class _Walk:
         self._stay(max(0.0, left - uncertain), longest_end(step.stroke, self.kinematics))
         self.merges = False
 
-    def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
+    def _go(
+        self, points: tuple[Position, ...], rates: Rates, speed: float | None, *, last: bool = True
+    ) -> None:
+        """Go along points; `last`: the next move, if there is one, is of the next step."""
         soonest, latest = rates.soonest(), rates.latest()
         legs = list(pairwise(points))
         least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
@@ -270,9 +274,12 @@ class _Walk:
         early = self.now
         self._ride(points, max(0.0, least - search), most + search + out, rates)
         if self.kinematics.timing.overshoot > 0.0:
-            self._overshoot(legs, early, speed or self.kinematics.cruise)
+            over = self._place() + (2 if last else 1)
+            self._overshoot(legs, early, speed or self.kinematics.cruise, over)
 
-    def _overshoot(self, legs: Sequence[tuple[Position, Position]], early: float, speed: float) -> None:
+    def _overshoot(
+        self, legs: Sequence[tuple[Position, Position]], early: float, speed: float, over: int
+    ) -> None:
         """Add where the robot turns back beyond the ends of legs, for as long as that may take.
 
         When it comes to a corner within a move is not known.
@@ -286,7 +293,7 @@ class _Walk:
                 since = max(begin, early - BACK_SECONDS) if len(legs) == 1 else begin
                 until = self.by + BACK_SECONDS
                 place = self._place()
-                self.rides.append(Ride(beyond, since, until, (0.0,), self.radius, step=place, over=place + 2))
+                self.rides.append(Ride(beyond, since, until, (0.0,), self.radius, step=place, over=over))
 
     def _ride(
         self,
@@ -326,7 +333,7 @@ class _Walk:
         return len(self.stops) - 1
 
 
-def _moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:
+def moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:
     """Yield the legs of a route, upright and level ones in a row together.
 
     A robot kind may make one move of these, during which the time at the corner is unknown. Of two level

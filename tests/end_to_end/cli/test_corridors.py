@@ -53,3 +53,49 @@ def test_a_corridor_without_a_width_is_refused(mmrs, tmp_path):
     drawing.write_text(json.dumps({"type": "FeatureCollection", "features": [LANE]}))
     code, _, err = mmrs("import", drawing, "--into", project, "--as", "lane*=Corridor")
     assert (code, f"width of Corridor '{NAME}' is 0, but must be more than 0 [CTX018]" in err) == (1, True)
+
+
+MISSION = """<?xml version="1.0" encoding="UTF-8"?>
+<mission:Mission xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" name="Fire" minimumSeparation="5.0"
+    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:mission="urn:mmrs:mission:1.0"
+    xmlns:survey="urn:mmrs:survey:1.0">
+  <team>
+    <robots name="Alba" type="Quad 650"><home xsi:type="mission:RelativeCoordinate" x="-10" y="0"/></robots>
+    <robots name="Brezza" type="Quad 650"><home xsi:type="mission:RelativeCoordinate" x="10" y="0"/></robots>
+  </team>
+  TASKS
+</mission:Mission>
+"""
+TASK = """<tasks xsi:type="survey:GoToTask" name="NAME">
+    <point xsi:type="mission:RelativeCoordinate" x="EAST" y="NORTH" z="20"/>
+  </tasks>"""
+CONTEXT = """<?xml version="1.0" encoding="UTF-8"?>
+<context:Context xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" name="Valley"
+    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:mission="urn:mmrs:mission:1.0"
+    xmlns:context="urn:mmrs:context:1.0">
+  <corridors name="lane" width="10" minHeight="18" maxHeight="22">
+    <points xsi:type="mission:RelativeCoordinate" x="0" y="50"/>
+    <points xsi:type="mission:RelativeCoordinate" x="0" y="150"/>
+  </corridors>
+</context:Context>
+"""
+
+
+def test_drones_that_share_a_corridor_signal_to_each_other_and_are_verified_to_keep_apart(mmrs, tmp_path):
+    project = tmp_path / "fire"
+    shutil.copytree(shipped("examples") / "carbon-dioxide" / "robots", project / "robots")
+    places = {"west": (-100, 400), "far west": (-300, 1200), "east": (100, 400), "far east": (300, 1200)}
+    tasks = [
+        TASK.replace("NAME", name).replace("EAST", str(east)).replace("NORTH", str(north))
+        for name, (east, north) in places.items()
+    ]
+    (project / "mission.xmi").write_text(MISSION.replace("TASKS", "".join(tasks)), encoding="utf-8")
+    (project / "context.xmi").write_text(CONTEXT, encoding="utf-8")
+    code, out, _ = mmrs("plan", project, "--json")
+    assert code == 0
+    assert json.loads(out)["makespan"] < 450.0
+    assert "Alba clear of Brezza" in (project / "behaviour.xmi").read_text(encoding="utf-8")
+    code, out, _ = mmrs("check", project, "--json")
+    found = {each["property"]: each["status"] for each in json.loads(out)["verdicts"]}
+    assert code == 0
+    assert {found[name] for name in ("separation", "synchronisation", "corridors")} == {"safe"}

@@ -1,0 +1,253 @@
+"""Keeps robots apart by signals: one waits until another tells that it is out of the way.
+
+A wait by the clock must allow for how slow and how quick robots may be, and the more the later it is. A
+signal ends a wait as soon as the other robot is out of the way. Where two robots come too near, one of them
+waits before a move of its path until the other one begins a later move, as trains do on a single track; or
+by the clock, where that costs less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import accumulate, pairwise
+from math import dist, inf
+from typing import TypeAlias
+
+from mmrs_core.planning.delaying import delayed, retimed
+from mmrs_core.planning.separation import Traffic, allowed, distance_to_keep, may_wait, recharges
+from mmrs_core.planning.team import Team
+from mmrs_core.planning.timeline import moves_along
+from mmrs_core.planning.travel import kinematics_of
+from mmrs_core.scene import Await, Plan, Position, Robot, Scene, Signal, Step, Transit
+
+Corner: TypeAlias = tuple[Position, Position, Position]
+
+_STEPS = 8_000
+"""Steps of plans that are looked at, at most: one plan for each wait, at least one wait for each conflict."""
+
+_PLACES = 6
+"""Steps back from where two robots meet that are tried to wait before."""
+
+_SHORT, _LONG = 3.0, 10.0
+"""Distances to keep before the end of a long leg at which a robot may wait."""
+
+_ENDS = 8
+"""Steps on from there of the other robot whose ends are tried to wait for."""
+
+
+def signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
+    """Return the plan in which robots wait for signals so that all keep apart; None if none is found.
+
+    Of the two robots that come too near first, that one waits with which the mission ends sooner.
+
+    Args:
+        team: of the scene, with a minimum separation.
+        plan: of the team.
+        most: seconds that the plan must take less than.
+        cut: whether robots may wait on long legs too, before the ends of these.
+    """
+    least, hasty = distance_to_keep(team.scene) or 0.0, recharges(plan)
+    traffic = Traffic(team.scene, _by_moves(team.scene, plan), least, hasty=hasty)
+    left = _STEPS
+    while left > 0:
+        if not traffic.conflicts:
+            made = _joined(team.scene, traffic.plan, plan)
+            return None if Traffic(team.scene, made, least, hasty=hasty).conflicts else made
+        steps = sum(len(each.steps) for each in traffic.plan.robots)
+        if steps * len(traffic.conflicts) > left:
+            break
+        options = [each for each in _options(team, traffic, cut=cut) if each.plan.makespan < most]
+        if not options:
+            break
+        left -= steps
+        traffic = min(options, key=_cost)
+    return None
+
+
+def _cost(traffic: Traffic) -> tuple[float, float, float]:
+    """Return (makespan, seconds until each robot is back, seconds away from home); less is better."""
+    makespan, backs, _ = traffic.cost
+    return makespan, backs, round(sum(each.busy for each in traffic.plan.robots), 3)
+
+
+def _options(team: Team, traffic: Traffic, *, cut: bool) -> Iterator[Traffic]:
+    """Yield what becomes of the traffic if one of the two robots that meet first lets the other go first."""
+    conflict = traffic.earliest()
+    for early, late in ((conflict.first, conflict.second), (conflict.second, conflict.first)):
+        met = traffic.met(early, late)
+        place = min(step for step, _, _ in met)
+        before = _progress(traffic, early, late)
+        for at_home in (False, True):
+            waits = traffic.waits(late, at_home=at_home, last=place)
+            if waits is not None:
+                other = allowed(team, traffic, delayed(team.scene, traffic.plan, late, waits))
+                if other is not None and _progress(other, early, late) > before:
+                    yield other
+        yield from _signalling(team, traffic, early, late, cut=cut)
+
+
+def _signalling(team: Team, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[Traffic]:
+    """Yield the traffic if one robot waits for the other, as near as it can and as briefly as helps."""
+    met, before = traffic.met(early, late), _progress(traffic, early, late)
+    told = traffic.steps(early)
+    last, over = min(step for step, _, _ in met), min(over for _, _, over in met)
+    ends = [each for each in range(over, len(told) + 1) if not isinstance(told[each - 1], Await | Signal)]
+    for plan, place, halved in _waiting_places(team.scene, traffic, late, last, cut=cut):
+        for end in ends[:_ENDS]:
+            if traffic.knows(early, end).get(late, -1) >= place:
+                break
+            other = allowed(team, traffic, _signalled_before(team.scene, plan, (early, end), (late, place)))
+            if other is None:
+                break
+            if _progress(other, early, late, halved) > before:
+                yield other
+                return
+
+
+def _waiting_places(
+    scene: Scene, traffic: Traffic, late: str, last: int, *, cut: bool
+) -> Iterator[tuple[Plan, int, float]]:
+    """Yield where a robot may wait: a plan, the step before which it does, and which step is cut for that.
+
+    A long leg is cut shortly before its end, as at the end of a corridor.
+    """
+    steps = traffic.steps(late)
+    step = steps[last] if last < len(steps) else None
+    if cut and isinstance(step, Transit) and len(step.route) == 2:
+        place = _places(steps)[last]
+        for away in (_SHORT * traffic.least, _LONG * traffic.least):
+            if dist(*step.route) > 2.0 * away:
+                parts = _cut(scene.robot(late), step, away)
+                robots = (
+                    replace(each, steps=(*steps[:last], *parts, *steps[last + 1 :]))
+                    if each.robot == late
+                    else each
+                    for each in traffic.plan.robots
+                )
+                yield replace(traffic.plan, robots=tuple(robots)), last + 1, place
+    places = [each for each in range(min(last, len(steps) - 1), -1, -1) if may_wait(steps[each])]
+    yield from ((traffic.plan, place, inf) for place in places[:_PLACES])
+
+
+def _cut(robot: Robot, step: Transit, away: float) -> tuple[Transit, Transit]:
+    """Return a leg in two, with a stop `away` metres before its end."""
+    begin, end = step.route
+    share, rates = away / dist(begin, end), kinematics_of(robot).rates(step.speed)
+    east, north, up = (share * a + (1.0 - share) * b for a, b in zip(begin, end, strict=True))
+    here = (east, north, up)
+    middle = step.begin + rates.from_stop_to_stop(begin, here)
+    after = middle + rates.from_stop_to_stop(here, end)
+    return replace(step, end=middle, route=(begin, here)), replace(
+        step, begin=middle, end=after, route=(here, end)
+    )
+
+
+def _progress(traffic: Traffic, early: str, late: str, cut: float = inf) -> tuple[float, float]:
+    """Return how far the later one of two robots, and then the other, comes before they meet, in steps.
+
+    The step of the later one that has been cut in two counts as one.
+    """
+    late_places, early_places = _places(traffic.steps(late)), _places(traffic.steps(early))
+    met = ((late_places[step], early_places[other]) for step, other, _ in traffic.met(early, late))
+    return min(((place - (place > cut), other) for place, other in met), default=(inf, inf))
+
+
+def _places(steps: Sequence[Step]) -> list[int]:
+    """Return, for each step and the end, how many steps before it are neither waits nor signals."""
+    places = [0]
+    for step in steps:
+        places.append(places[-1] + (not isinstance(step, Await | Signal)))
+    return places
+
+
+def _signalled_before(scene: Scene, plan: Plan, early: tuple[str, int], late: tuple[str, int]) -> Plan:
+    """Return the plan in which one robot waits before a step until another one begins one of its steps.
+
+    Args:
+        early, late: name of the robot, and index of its step.
+    """
+    (sender, end), (receiver, place) = early, late
+    steps = {each.robot: [*each.steps] for each in plan.robots}
+    told, waiting = steps[sender], steps[receiver]
+    name = _signal_name(plan, sender, receiver)
+    time = told[end - 1].end
+    told.insert(end, Signal(time, time, told[end - 1].task, name, (receiver,)))
+    last = waiting[place - 1] if place else None
+    if isinstance(last, Await) and last.until is None:
+        superseded = {each.signal for each in told if isinstance(each, Signal)} & set(last.signals)
+        superseded = {each for each in superseded if each.startswith(f"{sender}{_CLEAR}")}
+        kept = tuple(each for each in last.signals if each not in superseded)
+        waiting[place - 1] = replace(last, signals=(*kept, name))
+        steps[sender] = [
+            each for each in told if not (isinstance(each, Signal) and each.signal in superseded)
+        ]
+    else:
+        begin = waiting[place].begin
+        waiting.insert(place, Await(begin, begin, waiting[place].task, (name,)))
+    return retimed(scene, plan, {robot: tuple(each) for robot, each in steps.items()})
+
+
+_CLEAR = " clear of "
+
+
+def _signal_name(plan: Plan, sender: str, receiver: str) -> str:
+    """Return a name for a signal that is unique in a plan."""
+    known = {step.signal for each in plan.robots for step in each.steps if isinstance(step, Signal)}
+    name, number = f"{sender}{_CLEAR}{receiver}", 1
+    while name in known:
+        number += 1
+        name = f"{sender}{_CLEAR}{receiver} {number}"
+    return name
+
+
+def _by_moves(scene: Scene, plan: Plan) -> Plan:
+    """Return the plan with a step for each move of a transit, so that robots can wait and signal there."""
+    parts = {each.robot: tuple(_parts(scene.robot(each.robot), each.steps)) for each in plan.robots}
+    return retimed(scene, plan, parts)
+
+
+def _parts(robot: Robot, steps: Iterable[Step]) -> Iterator[Step]:
+    for step in steps:
+        moves = list(moves_along(list(pairwise(step.route)))) if isinstance(step, Transit) else []
+        if not isinstance(step, Transit) or len(moves) < 2:
+            yield step
+            continue
+        rates = kinematics_of(robot).rates(step.speed)
+        seconds = [sum(rates.from_stop_to_stop(*leg) for leg in pairwise(points)) for points in moves]
+        share = (step.end - step.begin) / sum(seconds)
+        times = [step.begin + share * each for each in accumulate(seconds, initial=0.0)]
+        for points, (begin, end) in zip(moves, pairwise(times), strict=True):
+            yield replace(step, begin=begin, end=end, route=points)
+
+
+def _joined(scene: Scene, plan: Plan, before: Plan) -> Plan:
+    """Return the plan with moves of one transit in one step again, where nothing is between them."""
+    steps = {}
+    for each, old in zip(plan.robots, before.robots, strict=True):
+        joints = {_corner(*pair) for pair in pairwise(old.steps)}
+        steps[each.robot] = tuple(_in_one(each.steps, joints))
+    return retimed(scene, plan, steps)
+
+
+def _in_one(steps: Iterable[Step], joints: Collection[Corner | None]) -> Iterator[Step]:
+    last: Step | None = None
+    for step in steps:
+        corner = None if last is None else _corner(last, step)
+        if corner is not None and corner not in joints:
+            assert isinstance(last, Transit)
+            assert isinstance(step, Transit)
+            last = replace(last, end=step.end, route=(*last.route, *step.route[1:]))
+            continue
+        if last is not None:
+            yield last
+        last = step
+    if last is not None:
+        yield last
+
+
+def _corner(one: Step, two: Step) -> Corner | None:
+    """Return where one transit leads on to another: places before, at and after; None: nowhere."""
+    if not (isinstance(one, Transit) and isinstance(two, Transit) and one.task == two.task):
+        return None
+    return one.route[-2], two.route[0], two.route[1]
