@@ -47,6 +47,9 @@ _INSIDE = 1.0
 _CLOSE = 0.1
 """Metres within which it is found where a robot is back in range."""
 
+_MOST_LATE = 4
+"""Times that relays are made to wait for one more robot to be home, before they wait for all."""
+
 _STAYS = "stay"
 """Rule of the move with which a stay ends."""
 
@@ -93,24 +96,42 @@ class Joining:
     def _kept_apart(self, team: Team, whole: Plan, needs: Mapping[str, _Need]) -> Plan:
         """Return the plan with all waits, in which robots keep apart.
 
-        The relays go home as soon as they may; or, if they would come too near to others then, when these
-        are home.
+        The relays go home as soon as they may. Where one of them would come too near to a robot that still
+        has its way home before it, it waits for that one to be home; and for all, where that does not help.
         """
-        try:
-            return separated(team, retimed(self._scene, whole, self._steps(team, needs, at_once=True)))
-        except TooNearError:
-            return separated(team, retimed(self._scene, whole, self._steps(team, needs, at_once=False)))
+        late = frozenset[str]()
+        for _ in range(_MOST_LATE):
+            try:
+                return separated(team, retimed(self._scene, whole, self._steps(team, needs, late)))
+            except TooNearError as error:
+                more = self._served_by_each_other(error.robots, needs) - late
+                if not more:
+                    break
+                late |= more
+        return separated(team, retimed(self._scene, whole, self._steps(team, needs, frozenset(needs))))
 
-    def _steps(self, team: Team, needs: Mapping[str, _Need], *, at_once: bool) -> dict[str, tuple[Step, ...]]:
+    def _served_by_each_other(self, robots: frozenset[str], needs: Mapping[str, _Need]) -> frozenset[str]:
+        """Return which of some robots need others of them as relays."""
+        return frozenset(
+            name
+            for name in robots & needs.keys()
+            if any(stay.robot.name in robots for stay in needs[name].relays)
+        )
+
+    def _steps(
+        self, team: Team, needs: Mapping[str, _Need], late: frozenset[str]
+    ) -> dict[str, tuple[Step, ...]]:
         """Return what robots do, with their waits.
 
         Args:
             team: of all.
             needs: by robot.
-            at_once: whether robots let the relays go when they are back in range, and not at their end only.
+            late: robots that let the relays go at their end only, not when they are back in range.
         """
         steps = {
-            each.robot: self._waiting(team.pilots[each.robot], each.steps, needs.get(each.robot), at_once)
+            each.robot: self._waiting(
+                team.pilots[each.robot], each.steps, needs.get(each.robot), each.robot not in late
+            )
             for each in self._robots
         }
         for stay in self._placed:

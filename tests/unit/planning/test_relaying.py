@@ -238,6 +238,20 @@ def test_an_explanation_says_what_waiting_for_the_relay_costs():
     assert [each.task for each in found.tasks] == ["far"]
 
 
+def test_a_relay_stays_until_that_robot_only_is_home_which_it_would_come_too_near_to():
+    """The path home of one leads along that of the relay, that of the other one does not."""
+    works = {
+        "behind": {"a": visit(FAR)},
+        "aside": {"b": visit((400.0, 250.0, 30.0))},
+        "ridge": {"c": staying(RIDGE)},
+    }
+    found = planned(works, minimum_separation=8.0)
+    home = {name: kinds(found, name).index("Recover") for name in "ab"}
+    told = {name: kinds(found, name).index("Signal") for name in "ab"}
+    assert told["a"] > home["a"]
+    assert told["b"] < home["b"]
+
+
 def test_launches_come_after_waits_so_that_no_robot_hovers_for_a_relay():
     found = planned()
     for each in found.robots:
