@@ -101,14 +101,18 @@ def _robots(explanation: PlanExplanation) -> ExplanationPart:
     team = len(explanation.backs) + len(explanation.idle)
     rows = [row for task in explanation.tasks for row in _rows(task, team)] if alternatives else []
     sentences = ["each alternative was planned, with all other tasks as they are"]
-    if any(each.name == "separation" for each in explanation.limits):
+    if explanation.apart:
         sentences[0] += "; times are those before robots wait to keep their distance"
     if not alternatives:
         sentences = ["there is only one robot" if team == 1 else "no task could be done by another robot"]
     if untried := sum(not task.tried for task in explanation.tasks):
         sentences.append(f"{untried} tasks were left out, since there are too many alternatives")
     if any(not each.fault and round(each.later) < 0 for each in alternatives):
-        sentences.append("an alternative would end sooner: a longer search (--time-limit) may find it")
+        sentences.append(
+            "an alternative would end sooner without these waits, and may end later with them"
+            if explanation.apart
+            else "an alternative would end sooner: a longer search (--time-limit) may find it"
+        )
     head = ("task", "robots", "alternative", "mission ends", "task ends", "robots busy")
     return ExplanationPart("Why these robots", tuple(sentences), head if rows else (), tuple(rows))
 
@@ -191,11 +195,14 @@ def _idle_words(explanation: PlanExplanation) -> Iterator[str]:
         how = _change(robots[task], each.robots)
         if each.fault:
             yield f"'{name}' can take no task: best of all '{task}' ({how}), but {each.fault}"
-        elif round(each.later) <= 0:
+        elif round(each.later) == 0:
             yield f"'{name}' would not make the mission end sooner: at best it would take '{task}' ({how})"
         else:
             late = _signed(each.later, "later", "sooner")
-            yield f"'{name}' would make the mission end {late}, at best with '{task}' ({how})"
+            waits = (
+                ", before robots wait to keep their distance" if explanation.apart and each.later < 0 else ""
+            )
+            yield f"'{name}' would make the mission end {late}, at best with '{task}' ({how}){waits}"
 
 
 def _can_nothing(explanation: PlanExplanation, robot: str) -> bool:

@@ -101,6 +101,7 @@ class PlanExplanation:
         limits: those that cost most first.
         tasks: in the order in which they begin.
         idle: by robot without work: the task that it would do best, and at what cost; None: none was tried.
+        apart: whether robots keep apart, so that alternatives are compared before they wait for that.
     """
 
     makespan: float
@@ -110,6 +111,7 @@ class PlanExplanation:
     limits: tuple[Limit, ...]
     tasks: tuple[TaskExplanation, ...]
     idle: Mapping[str, tuple[str, Alternative] | None]
+    apart: bool = False
 
 
 def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanation:
@@ -153,6 +155,7 @@ class _Explaining:
             tuple(sorted(self._limits(), key=lambda each: -each.cost)),
             tuple(tasks),
             {each.robot: _best_for(each.robot, tasks) for each in self._plan.robots if not each.steps},
+            distance_to_keep(self._scene) is not None,
         )
 
     def _task(self, job: Job) -> TaskExplanation:
@@ -260,11 +263,14 @@ class _Explaining:
         if not isinstance(found, Schedule):
             return
         apart = distance_to_keep(scene) is not None
-        if scene.stations:
+        if scene.stations and self._ends:
             names = ", ".join(f"'{station.name}'" for station in scene.stations)
-            words = f"robots wait for {names}, which come home last{', and keep apart' if apart else ''}"
+            relays = (
+                f"relay {names}, which comes" if len(scene.stations) == 1 else f"relays {names}, which come"
+            )
+            words = f"robots wait for {relays} home last{', and keep apart' if apart else ''}"
             yield Limit("relays", self._whole.makespan - max(self._ends), words)
-        elif apart:
+        elif apart and self._ends:
             words = f"robots keep {scene.minimum_separation:g} m apart"
             yield Limit("separation", self._plan.makespan - max(self._ends), words)
         if any(job.after for job in self._jobs):

@@ -1,9 +1,10 @@
 import json
+from dataclasses import replace
 
 from plain_scenes import robot, scene, task, visit
 
 from mmrs_core.cli.plan_words import explanation_lines, explanation_summary
-from mmrs_core.planning.explaining import explain
+from mmrs_core.planning.explaining import Alternative, explain
 from mmrs_core.planning.planner import plan
 
 TEXT = [
@@ -50,3 +51,22 @@ def test_an_explanation_reads_well_and_is_json():
     explanation = explain(whole, plan(whole))
     assert list(explanation_lines(explanation)) == TEXT
     assert "lastRobot" in json.dumps(explanation_summary(explanation), allow_nan=False)
+
+
+def test_an_alternative_that_ends_sooner_before_robots_wait_to_keep_apart_says_so():
+    """Neither is it said to be no sooner, nor that a longer search would find it."""
+    team = [robot("Alba"), robot("Brezza", (60.0, 0.0, 0.0))]
+    whole = scene(team, {"gate": visit((-300.0, 0.0, 20.0))}, minimum_separation=5.0)
+    found = explain(whole, plan(whole))
+    sooner = Alternative(("Brezza",), -76.0, -76.0, 5.0)
+    tasks = tuple(replace(each, alternatives=(sooner,)) for each in found.tasks)
+    lines = list(explanation_lines(replace(found, tasks=tasks, idle={"Brezza": ("gate", sooner)})))
+    assert lines[lines.index("Why these robots") + 1] == (
+        "  each alternative was planned, with all other tasks as they are;"
+        " times are those before robots wait to keep their distance"
+    )
+    assert "  an alternative would end sooner without these waits, and may end later with them" in lines
+    assert lines[-1] == (
+        "  'Brezza' would make the mission end 1:16 sooner, at best with 'gate' (Brezza instead),"
+        " before robots wait to keep their distance"
+    )

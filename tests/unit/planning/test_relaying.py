@@ -238,6 +238,12 @@ def test_an_explanation_says_what_waiting_for_the_relay_costs():
     assert [each.task for each in found.tasks] == ["far"]
 
 
+def test_an_explanation_of_a_relay_with_nothing_else_to_do_names_no_waits():
+    whole = scene(TEAM, {"ridge": staying(RIDGE)}, minimum_separation=5.0)
+    found = explain(whole, plan(whole))
+    assert [each.name for each in found.limits] == ["charge"]
+
+
 def test_a_relay_stays_until_that_robot_only_is_home_which_it_would_come_too_near_to():
     """The path home of one leads along that of the relay, that of the other one does not."""
     works = {
