@@ -49,7 +49,7 @@ class Reach:
         centres: (east, north, up) of each, metres.
         ranges: the smaller of both ranges, metres, less what the relay may be elsewhere.
         error: of positions, by which balls are smaller, metres.
-        severed: names of the relays that have no chain to home.
+        severed: the relays that have no chain to home, in words: which, and by how much they miss one.
     """
 
     names: tuple[str, ...]
@@ -148,8 +148,9 @@ class Reach:
         nearest = int(outside[worst].argmin())
         metres, limit = lengths(float(away[worst, nearest]) + spare + self.error, self.ranges[nearest])
         east, north, up = places[worst].tolist()
-        name = f"relay '{self.names[nearest]}'" if self.names[nearest] else "home"
-        without = f"; no chain of relays leads home from {_listed(self.severed)}" if self.severed else ""
+        name = _named(self.names[nearest])
+        severed = " and from ".join(self.severed)
+        without = f"; no chain of relays leads home from {severed}" if severed else ""
         at = f" at ({east:.1f}, {north:.1f}, {up:.1f})"
         return f"{metres} from {name}{at}, its radio reaches {limit}{without}"
 
@@ -172,13 +173,30 @@ def reach_of(robot: Robot, relays: Sequence[Relay], error: float) -> Reach | Non
         tuple(each.position for each in chain),
         tuple(min(range, each.range) - each.spread for each in chain),
         error,
-        tuple(each.name for each in rest),
+        tuple(_missing(each, chain) for each in rest),
     )
 
 
 def _linked(one: Relay, two: Relay) -> bool:
-    apart = dist(one.position, two.position) + one.spread + two.spread
-    return apart <= min(one.range, two.range)
+    return _missed(one, two) <= 0.0
+
+
+def _missed(one: Relay, two: Relay) -> float:
+    """Return the metres by which two relays may be too far apart to reach each other."""
+    return dist(one.position, two.position) + one.spread + two.spread - min(one.range, two.range)
+
+
+def _missing(relay: Relay, chain: Sequence[Relay]) -> str:
+    """Return in words by how much a relay misses the nearest of a chain."""
+    nearest = min(chain, key=lambda each: _missed(each, relay))
+    allowed = min(nearest.range, relay.range)
+    away, limit = lengths(_missed(nearest, relay) + allowed, allowed)
+    far = f"it is {away} from {_named(nearest.name)}"
+    return f"{_named(relay.name)}: {far}, they reach each other within {limit}"
+
+
+def _named(relay: str) -> str:
+    return f"relay '{relay}'" if relay else "home"
 
 
 class Reaches:
@@ -311,8 +329,3 @@ def _chain_between(
         one, two = low + (high - low) / 3.0, high - (high - low) / 3.0
         low, high = (low, two) if at(one)[0].range <= at(two)[0].range else (one, high)
     return min(at(low), at(high), key=lambda each: each[0].range)
-
-
-def _listed(names: Iterable[str]) -> str:
-    known = [f"'{name}'" for name in names]
-    return f"relay{'s' if len(known) > 1 else ''} {', '.join(known)}"

@@ -90,7 +90,8 @@ def test_the_goal_out_of_range_is_named_with_the_nearest_relay():
         Space((), 1.0).within(reach(HILL, severed)).route(HOME, (200.0, 0.0, 0.0))
     assert str(refused.value) == (
         "goal (200.0, 0.0, 0.0) is out of range: 110.00 m from relay 'hill' at (200.0, 0.0, 0.0),"
-        " its radio reaches 100.00 m; no chain of relays leads home from relay 'far'"
+        " its radio reaches 100.00 m; no chain of relays leads home from relay 'far':"
+        " it is 410.00 m from relay 'hill', they reach each other within 100.00 m"
     )
 
 

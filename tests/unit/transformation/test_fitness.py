@@ -63,5 +63,6 @@ def test_a_work_in_range_of_a_relay_with_a_chain_is_in_reach():
     severed = Relay("mast", (0.0, 51.0, 0.0), 60.0)
     assert out_of_reach(far, near, [severed]) == (
         "would be 90.00 m from home at (0.0, 90.0, 0.0), its radio reaches 50.00 m;"
-        " no chain of relays leads home from relay 'mast'"
+        " no chain of relays leads home from relay 'mast':"
+        " it is 51.00 m from home, they reach each other within 50.00 m"
     )
