@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, dist
+from math import ceil, dist, floor
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.bounds import least_makespan
@@ -96,8 +96,9 @@ class Joining:
     def _kept_apart(self, team: Team, whole: Plan, needs: Mapping[str, _Need]) -> Plan:
         """Return the plan with all waits, in which robots keep apart.
 
-        The relays go home as soon as they may. Where one of them would come too near to a robot that still
-        has its way home before it, it waits for that one to be home; and for all, where that does not help.
+        The relays leave in time, and go home as soon as they may. Where one of them would come too near to a
+        robot that still has its way home before it, it waits for that one to be home. Where that does not
+        help, relays leave first of all, and wait for all to be home.
         """
         late = frozenset[str]()
         for _ in range(_MOST_LATE):
@@ -108,7 +109,8 @@ class Joining:
                 if not more:
                     break
                 late |= more
-        return separated(team, retimed(self._scene, whole, self._steps(team, needs, frozenset(needs))))
+        steps = self._steps(team, needs, frozenset(needs), first=True)
+        return separated(team, retimed(self._scene, whole, steps))
 
     def _served_by_each_other(self, robots: frozenset[str], needs: Mapping[str, _Need]) -> frozenset[str]:
         """Return which of some robots need others of them as relays."""
@@ -119,7 +121,7 @@ class Joining:
         )
 
     def _steps(
-        self, team: Team, needs: Mapping[str, _Need], late: frozenset[str]
+        self, team: Team, needs: Mapping[str, _Need], late: frozenset[str], *, first: bool = False
     ) -> dict[str, tuple[Step, ...]]:
         """Return what robots do, with their waits.
 
@@ -127,6 +129,7 @@ class Joining:
             team: of all.
             needs: by robot.
             late: robots that let the relays go at their end only, not when they are back in range.
+            first: whether relays leave first of all, and not in time only.
         """
         steps = {
             each.robot: self._waiting(
@@ -134,10 +137,26 @@ class Joining:
             )
             for each in self._robots
         }
-        for stay in self._placed:
-            users = [name for name, need in needs.items() if stay in need.relays]
-            steps[stay.robot.name] = tuple(_staying(steps[stay.robot.name], stay, users))
+        needed = {name: self._plan_of(name).steps[need.begin].begin for name, need in needs.items()}
+        for stay in reversed(self._placed):
+            name = stay.robot.name
+            users = [user for user, need in needs.items() if stay in need.relays]
+            start = 0.0 if first else self._start(stay, min((needed[user] for user in users), default=0.0))
+            if name in needed:
+                needed[name] += start
+            idle = Await(0.0, start, stay.task, (), start)
+            staying = _staying(steps[name], stay, users)
+            steps[name] = (idle, *staying) if start > 0.0 else tuple(staying)
         return steps
+
+    def _plan_of(self, name: str) -> RobotPlan:
+        return next(each for each in self._robots if each.robot == name)
+
+    def _start(self, stay: Stay, needed: float) -> float:
+        """Return the whole seconds after which a relay leaves so as to be at its place when it is needed."""
+        steps = self._plan_of(stay.robot.name).steps
+        there = next(step.end for step in steps if isinstance(step, Serve) and step.last)
+        return float(max(0, floor(needed - there)))
 
     def _least(self, team: Team) -> float:
         """Return a time that no plan's falls below: all robots do the other tasks, and relays are there."""
@@ -169,7 +188,8 @@ class Joining:
                 f"no plan: robot '{plan.robot}' ends where its radio needs the relay {words}, which could"
                 " never go home; let it return home"
             )
-        return _Need(tuple(relays), outside[0], last)
+        launches = [i for i in range(outside[0] + 1) if isinstance(plan.steps[i], Launch)]
+        return _Need(tuple(relays), (launches or [outside[0]])[-1], last)
 
     def _waiting(
         self, pilot: Pilot, steps: tuple[Step, ...], need: _Need | None, at_once: bool
@@ -178,8 +198,7 @@ class Joining:
         if need is None:
             return steps
         name = pilot.robot.name
-        launches = [i for i in range(need.first + 1) if isinstance(steps[i], Launch)]
-        begin = (launches or [need.first])[-1]
+        begin = need.begin
         wait = Await(
             steps[begin].begin,
             steps[begin].begin,
@@ -238,10 +257,16 @@ class Joining:
 
 @dataclass(frozen=True, slots=True)
 class _Need:
-    """Which relays a robot needs: from the first to the last of its steps that lead out of its own range."""
+    """Which relays a robot needs: from the step on with which it leaves for what is out of its own range.
+
+    Attributes:
+        relays: that it needs.
+        begin: index of that step: the launch for that sortie, if there is one.
+        last: index of the last step that leads out of its range.
+    """
 
     relays: tuple[Stay, ...]
-    first: int
+    begin: int
     last: int
 
 

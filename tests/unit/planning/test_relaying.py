@@ -244,6 +244,31 @@ def test_an_explanation_of_a_relay_with_nothing_else_to_do_names_no_waits():
     assert [each.name for each in found.limits] == ["charge"]
 
 
+def test_a_relay_leaves_in_time_for_the_first_robot_that_needs_it_and_not_before():
+    tasks = {"far": task("far", earliest=600.0)}
+    found = planned({"far": visit(FAR), "ridge": {"c": staying(RIDGE)}}, tasks=tasks)
+    name = next(each.robot for each in found.robots if each.robot != "c" and each.steps)
+    there = next(step for step in steps(found, "c") if isinstance(step, Signal))
+    launched = next(step for step in steps(found, name) if isinstance(step, Launch))
+    assert launched.begin - 1.0 < there.begin <= launched.begin
+    assert found.begins["far"] == pytest.approx(600.0)
+
+
+def test_a_chain_of_relays_leaves_in_time_for_what_is_beyond_it():
+    robots = [radio("a", 0.0), radio("b", 20.0, relay=300.0), radio("c", 40.0, relay=300.0)]
+    one, two = staying(RIDGE), staying((530.0, 0.0, 40.0))
+    works = {
+        "one": {"b": one, "c": one},
+        "two": {"b": two, "c": two},
+        "farther": {"a": visit((760.0, 0.0, 30.0))},
+    }
+    found = planned(works, robots, tasks={"farther": task("farther", earliest=900.0)})
+    leaves = sorted(step.begin for name in "bc" for step in steps(found, name) if isinstance(step, Launch))
+    (launched,) = [step.begin for step in steps(found, "a") if isinstance(step, Launch)]
+    assert 600.0 < leaves[0] < leaves[1] < launched
+    assert found.begins["farther"] == pytest.approx(900.0)
+
+
 def test_a_relay_stays_until_that_robot_only_is_home_which_it_would_come_too_near_to():
     """The path home of one leads along that of the relay, that of the other one does not."""
     works = {
