@@ -151,9 +151,15 @@ class _Radio:
         doubtful = {each.name for each in others} - {each.name for each in certain}
         if not doubtful or self._over(leg, self._stations(others)).value < -TOLERANCE:
             return found
-        names = ", ".join(f"'{name}'" for name in sorted(doubtful))
+        alone = {
+            each.name
+            for each in others
+            if self._over(leg, self._stations([*certain, each])).value >= -TOLERANCE
+        }
+        names = [f"'{name}'" for name in sorted(doubtful & alone or doubtful)]
         when = "during the wait after it" if waiting else "throughout"
-        words = f"it is not certain that {names} is a relay {when}"
+        are = " or ".join(names) + " is a relay" if alone else " and ".join(names) + " are relays"
+        words = f"it is not certain that {are} {when}"
         return replace(found, message=f"{found.message}; {words}")
 
     def _stations(self, robots: Sequence[Relay]) -> list[Station]:

@@ -187,3 +187,16 @@ def test_a_robot_is_no_relay_on_the_ground():
         waits={"stay": ("back",)},
     )
     assert judged(flier, landed, flying=True).status is Status.VIOLATED
+
+
+def test_only_those_robots_are_named_as_uncertain_that_would_do_as_relays():
+    """Robot s holds its position, too, but far from a."""
+    aside = carrier("s", [go("aside", (0.0, 90.0, 0.0)), hold("look", 5.0), go("leave", HOME)])
+    verdict = judged(user(waits=()), relay(), aside)
+    assert verdict.message.endswith("; it is not certain that 'r' is a relay throughout")
+
+
+def test_all_robots_of_a_chain_are_named_as_uncertain():
+    far = carrier("s", [go("there", OUT), hold("look", 5.0), go("leave", HOME)])
+    verdict = judged(user(to=(270.0, 0.0, 0.0)), relay(waits=()), far)
+    assert verdict.message.endswith("; it is not certain that 'r' and 's' are relays throughout")
