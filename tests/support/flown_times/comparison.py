@@ -139,7 +139,7 @@ def _steps(
     records = [json.loads(line) for line in log.read_text().splitlines()]
     steps = [(each["label"], each["move"], float(each["time"])) for each in records]
     found = Comparison(flight, robot.id, "steps")
-    spans = _spans(steps, Clock(steps, track, modelled))
+    spans = _spans(steps, Clock(steps, track, modelled), modelled)
     moved = {move: span for move, span in spans.items() if (robot.id, move) not in without}
     found.add(moved, modelled, uploaded=False)
     found.whole = bool(steps) and steps[-1][:2] == ("end", robot.moves[robot.stop].id)
@@ -175,8 +175,11 @@ def _mission(flight: str, modelled: Modelled, track: Sequence[Sample]) -> Compar
     return found
 
 
-def _spans(steps: Iterable[Step], clock: Clock) -> dict[str, tuple[float, float]]:
-    """Return for each completed move how long it moved, and how long with its actions."""
+def _spans(steps: Iterable[Step], clock: Clock, modelled: Modelled) -> dict[str, tuple[float, float]]:
+    """Return for each completed move how long it moved, and how long with its actions.
+
+    Stays end by the program's clock, whatever the vehicle's shows.
+    """
     begun: dict[str, float] = {}
     moved: dict[str, float] = {}
     acted: dict[str, float] = {}
@@ -185,7 +188,7 @@ def _spans(steps: Iterable[Step], clock: Clock) -> dict[str, tuple[float, float]
         if label == "begin":
             begun[move] = time
         elif label == "end" and move in begun:
-            moved[move] = clock.passed(begun[move], time)
+            moved[move] = time - begun[move] if move in modelled.stays else clock.passed(begun[move], time)
         elif label in ("act", "ntf"):
             acted[move] = acted.get(move, 0.0) + clock.passed(before, time)
         before = time

@@ -115,6 +115,16 @@ class Modelled:
         return [[self.robot.moves[index].id for index in run] for run in found]
 
     @cached_property
+    def stays(self) -> set[str]:
+        """Moves that last for a time of the program's clock, where the robot is, and are no part of a run."""
+        flown = {move for run in self.runs for move in run}
+        return {
+            move.id
+            for move in self.robot.moves
+            if move.id not in flown and move.is_a((BEHAVIOUR, "HoldPosition"))
+        }
+
+    @cached_property
     def stepped(self) -> set[str]:
         """The moves whose ends show on a track: those that lead to places and are no part of a run."""
         flown = {move for run in self.runs for move in run}
