@@ -1,9 +1,9 @@
 """Robots that are relays where they hold their position, and during which moves of others they surely are.
 
-A robot whose type has a relayRange passes on the radio of others wherever it stands away from the ground. A
-robot may count on it in a move if the stand is certain: in every run the robot comes to its place before
-that move begins, and leaves it, if ever, after the move is over. Either follows from what robots wait for,
-however uncertain times are, or from times that are certain enough.
+A robot whose type has a relayRange passes on the radio of others wherever it stands; one that launches does
+so off the ground only. A robot may count on it in a move if the stand is certain: in every run the robot
+comes to its place before that move begins, and leaves it, if ever, after the move is over. Either follows
+from what robots wait for, however uncertain times are, or from times that are certain enough.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ class Robot(Element):
     communicationRange: float | None
     """Maximum range of the radio control, in metres, to the control station at home, to a relay of the context or to a robot that is a relay; absent: unknown."""
     relayRange: float | None
-    """Maximum range, in metres, of the relay on board, which passes on the radio between other robots, relays and the control station while the robot holds its position away from the ground; absent: it carries no relay."""
+    """Maximum range, in metres, of the relay on board, which passes on the radio between other robots, relays and the control station while the robot holds its position, a robot that launches off the ground only; absent: it carries no relay."""
     dataRate: float | None
     """Data rate between robot and control station, in kilobits per second."""
     radioFrequency: float | None

@@ -97,8 +97,7 @@ class Joining:
         """Return the plan with all waits, in which robots keep apart.
 
         The relays leave in time, and go home as soon as they may. Where one of them would come too near to a
-        robot that still has its way home before it, it waits for that one to be home. Where that does not
-        help, relays leave first of all, and wait for all to be home.
+        robot that is still to go home, it waits for that one to be home. Where that does not help, relays leave first of all, and wait for all to be home.
         """
         late = frozenset[str]()
         for _ in range(_MOST_LATE):
