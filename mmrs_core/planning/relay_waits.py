@@ -15,6 +15,7 @@ from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.reach import Reach, reach_of, unsure
+from mmrs_core.planning.remedies import lifetime_of
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import TooNearError, separated
 from mmrs_core.planning.sorties import Pilot
@@ -97,7 +98,8 @@ class Joining:
         """Return the plan with all waits, in which robots keep apart.
 
         The relays leave in time, and go home as soon as they may. Where one of them would come too near to a
-        robot that is still to go home, it waits for that one to be home. Where that does not help, relays leave first of all, and wait for all to be home.
+        robot that is still to go home, it waits for that one to be home. Where that does not help, relays
+        leave first of all, and wait for all to be home.
         """
         late = frozenset[str]()
         for _ in range(_MOST_LATE):
@@ -245,10 +247,12 @@ class Joining:
                 )
                 continue
             users = ", ".join(f"'{user}'" for user, need in needs.items() if stay in need.relays)
+            now = lifetime_of(self._scene, pilot.robot)
+            enough = ceil(now * (used[name] + pilot.charge - allowed) / pilot.charge)
             reasons.append(
                 f"'{name}' would be out for up to {ceil(used[name])} s as relay '{stay.task}' of {users}, it"
-                f" has {charge}: {over}; a robot with a longer lifetime as relay, more robots beyond it, or"
-                " fewer tasks there in one mission would help"
+                f" has {charge}: {over}; a lifetime of {enough} s (now {now:.0f} s) would do; more robots"
+                " beyond it, or fewer tasks there in one mission, would help"
             )
         if reasons:
             raise InfeasibleError(f"no plan: {reasons[0]}", reasons)

@@ -276,5 +276,5 @@ def _kept_clear(scene: Scene, crew: Sequence[Stay]) -> Iterator[Area]:
         out = least / cos(pi / _CORNERS)
         angles = [2.0 * pi * i / _CORNERS for i in range(_CORNERS)]
         shell = tuple((east + out * cos(each), north + out * sin(each)) for each in angles)
-        name = f"relay '{stay.task}'"
+        name = f"surroundings of relay {stay.task}"
         yield Area(name, AreaUse.OBSTACLE, shell, up - least, up + least)

@@ -69,7 +69,7 @@ def too_long(team: Team, jobs: Sequence[Job]) -> list[str]:
             continue
         remedies = [*_homes(team, jobs, task, name, index)]
         if name in lifetimes:
-            now = _lifetime(team.scene, team.scene.robot(name))
+            now = lifetime_of(team.scene, team.scene.robot(name))
             remedies.insert(0, f"a lifetime of {lifetimes[name]} s (now {now:.0f} s){charging}")
         remedies[:1] = [f"for '{name}', {each}" for each in remedies[:1]]
         remedies += diverting
@@ -93,7 +93,7 @@ def _lifetimes(
     """
     scene, needed = team.scene, dict[str, int]()
     for name, short, _ in worst:
-        lifetime = _lifetime(scene, scene.robot(name)) if name else inf
+        lifetime = lifetime_of(scene, scene.robot(name)) if name else inf
         if inf in (lifetime, short):
             return {}, ""
         charge = team.pilots[name].charge
@@ -103,7 +103,7 @@ def _lifetimes(
 
     def plannable(factor: float, change: Callable[[Robot], Robot] = lambda robot: robot) -> bool:
         def changed(robot: Robot) -> Robot:
-            return _lasting(change(robot), factor * needed[robot.name] / _lifetime(scene, robot))
+            return _lasting(change(robot), factor * needed[robot.name] / lifetime_of(scene, robot))
 
         return _plannable(_with(scene, [*needed], changed), jobs, team.spaces)
 
@@ -258,7 +258,7 @@ def for_all_charges(team: Team, jobs: Sequence[Job], job: Job) -> Iterator[str]:
     scene, able = team.scene, _able(team, job)
     if len(jobs) * len(scene.robots) > _MOST_PAIRS or not able:
         return
-    lifetimes = {_lifetime(scene, scene.robot(name)) for name in able}
+    lifetimes = {lifetime_of(scene, scene.robot(name)) for name in able}
 
     def plannable(change: Callable[[Robot], Robot]) -> bool:
         return _plannable(_with(scene, able, change), jobs, team.spaces)
@@ -338,7 +338,7 @@ def _able(team: Team, job: Job) -> list[str]:
     return [name for name in team.pilots if all(name in team.able(task) for task in job.tasks())]
 
 
-def _lifetime(scene: Scene, robot: Robot) -> float:
+def lifetime_of(scene: Scene, robot: Robot) -> float:
     """Return how long a robot's batteries last, seconds, its reserve included."""
     return robot.kinematics.endurance / (1.0 - scene.reserve) if robot.kinematics is not None else inf
 

@@ -1,5 +1,6 @@
 """Robots that stay as relays, in scenes made by hand: any rule may ask for one, whatever its task is."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -170,12 +171,17 @@ def test_a_stay_that_takes_longer_than_a_charge_is_refused_with_figures_and_what
     robots = [TEAM[0], radio("c", 40.0, relay=300.0, kinematics=short)]
     words = (
         r"'c' would be out for up to \d+ s as relay 'ridge' of 'a', it has 900 s a charge: \d+ s too long; a"
+        r" lifetime of \d+ s \(now \d+ s\) would do"
     )
     with pytest.raises(InfeasibleError, match=words) as refused:
         planned(works, robots)
-    used, over = (int(word) for word in str(refused.value).split() if word.isdigit() and word != "900")
+    used, over, lifetime, now = map(int, re.findall(r"(\d+) s(?! a charge)", str(refused.value)))
     assert used - over == 900
-    planned(works, [TEAM[0], radio("c", 40.0, relay=300.0, kinematics=replace(DRONE, endurance=used))])
+    enough = replace(DRONE, endurance=900.0 * lifetime / now)
+    planned(works, [TEAM[0], radio("c", 40.0, relay=300.0, kinematics=enough)])
+    less = replace(enough, endurance=enough.endurance - 3.0)
+    with pytest.raises(InfeasibleError):
+        planned(works, [TEAM[0], radio("c", 40.0, relay=300.0, kinematics=less)])
 
 
 def test_a_robot_that_ends_beyond_the_relay_is_refused():
