@@ -21,8 +21,7 @@ from mmrs_core.geometry.segments import legs_of
 from mmrs_core.planning.obstacles import Flags, Floats
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.scene import AreaUse, Position, Robot, Scene, Stroke, distinct_works
-from mmrs_core.scene.attributes import number
-from mmrs_core.scene.relays import Relay, relays_of
+from mmrs_core.scene.relays import Relay, radio_range, relays_of
 
 _Disc: TypeAlias = tuple[float, float, float]
 
@@ -157,7 +156,7 @@ class Reach:
 
 def reach_of(robot: Robot, relays: Sequence[Relay], error: float) -> Reach | None:
     """Return where a robot is in range; None where its range is unknown."""
-    range = number(robot.type.part, "communicationRange")
+    range = radio_range(robot.type)
     if range is None:
         return None
     chain, rest = [Relay("", robot.home, range)], list(relays)
@@ -215,7 +214,7 @@ class Reaches:
 
     def of(self, robot: Robot) -> Reach | None:
         """Return where a robot is in range; None where it is wherever it may ever be, or that is unknown."""
-        key = robot.home, number(robot.type.part, "communicationRange")
+        key = robot.home, radio_range(robot.type)
         if key not in self._known:
             found = reach_of(robot, self._relays, self._error)
             within = found is None or all(

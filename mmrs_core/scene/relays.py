@@ -48,6 +48,11 @@ def relay_range(type: RobotType) -> float | None:
     return number(type.part, "relayRange")
 
 
+def radio_range(type: RobotType) -> float | None:
+    """Return the range of the radio between robots of a type and home, metres; None where none is stated."""
+    return number(type.part, "communicationRange")
+
+
 def station_of(task: str, work: Work, type: RobotType, error: float) -> Relay | None:
     """Return the relay that a robot of a type is where a work ends; None where it is none.
 

@@ -40,7 +40,7 @@ from mmrs_core.scene import (
     Transit,
     all_steps,
 )
-from mmrs_core.scene.relays import relays_of, station_of
+from mmrs_core.scene.relays import radio_range, relays_of, station_of
 
 _DRAWN = (Launch, Transit, Serve, Recover)
 _KINDS: dict[type[Step], str] = {
@@ -51,6 +51,9 @@ _KINDS: dict[type[Step], str] = {
     Recharge: "recharge",
 }
 _NORTH = (0.0, 1.0)
+
+_CLOSE = 0.05
+"""Share of the radio's range within which homes are drawn as one."""
 
 
 def picture_of_plan(
@@ -83,7 +86,22 @@ def picture_of_plan(
 
 
 def _ranges(scene: Scene, plan: Plan) -> Iterator[RadioRange]:
-    """Yield the ranges of the context's relays, and of the robots that stay somewhere as relays."""
+    """Yield the ranges of the context's relays, of the robots that stay somewhere as relays, and from home.
+
+    Where there are no relays, nothing is drawn. Homes close together are drawn as one.
+    """
+    relays = [*_relay_ranges(scene, plan)]
+    homes = list[RadioRange]()
+    for robot in scene.robots if relays else ():
+        metres, at = radio_range(robot.type), robot.home[:2]
+        if metres is not None and all(
+            each.metres != metres or dist(each.at, at) > _CLOSE * metres for each in homes
+        ):
+            homes.append(RadioRange(f"home of '{robot.name}'", at, metres))
+    yield from (*homes, *relays)
+
+
+def _relay_ranges(scene: Scene, plan: Plan) -> Iterator[RadioRange]:
     for relay in relays_of(scene.elements):
         yield RadioRange(f"relay '{relay.name}'", relay.position[:2], relay.range)
     for each in plan.robots:

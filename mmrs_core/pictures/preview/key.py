@@ -31,7 +31,7 @@ _SIGNS = (
     ("kept", "clearance"),
     ("emergency", "emergency area"),
 )
-_RANGE_SIGNS = (("range", "radio range of a relay"),)
+_RANGE_SIGNS = (("range", "radio range"),)
 _FLOWN_SIGNS = (
     ("planned", "pale: as planned"),
     ("response", "dotted: off-plan"),

@@ -128,12 +128,12 @@ def map_of(picture: Picture, *, standalone: bool = False, only: int | None = Non
 
 
 def _range(range: RadioRange, projection: Projection) -> Shape:
-    """Return the circle around a relay within which its radio reaches at its own height."""
+    """Return the circle within which a radio reaches at its own height."""
     (x, y), radius = projection.place(range.at), range.metres * projection.scale
     arcs = "".join(
         f"a{number(radius)} {number(radius)} 0 1 0 {number(each)} 0" for each in (2 * radius, -2 * radius)
     )
-    tip = f"{range.relay}: its radio reaches {length(range.metres)}"
+    tip = f"{range.whose}: its radio reaches {length(range.metres)}"
     return Shape("range", f"M{number(x - radius)} {number(y)}{arcs}", tip)
 
 

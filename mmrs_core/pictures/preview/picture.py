@@ -297,9 +297,9 @@ class Handover:
 
 @dataclass(frozen=True, slots=True)
 class RadioRange:
-    """How far a relay reaches, and from where: metres around (east, north)."""
+    """How far a radio reaches: metres around (east, north). whose: a relay's, or that of a home, in words."""
 
-    relay: str
+    whose: str
     at: Point
     metres: float
 
@@ -318,7 +318,7 @@ class Picture:
         gaps: what the map does not show, or not whole; what is not drawn at all comes first.
         checks: what was found of the safety of its behaviour: (property, words).
         explanation: why its plan is as it is; empty where that was not asked for.
-        ranges: of the relays of the context, and of robots that stay as relays.
+        ranges: of relays, robots included, and from homes.
     """
 
     title: str

@@ -70,3 +70,16 @@ def test_the_landmark_of_the_dam_is_on_the_map_and_on_the_page(taken, picture_of
     told = "landmark, description staff gauge on the left wall of the spillway"
     assert f"<title>spillway gauge: {told}</title>" in map_of(picture)
     assert "landmark</li>" in page(picture)
+
+
+@pytest.mark.parametrize("name", ["ridge", "barn", "solar-park"])
+def test_radio_ranges_are_drawn_where_there_are_relays(taken, picture_of, name):
+    drawn = {each.whose: (each.at, each.metres) for each in picture_of(taken(name)).ranges}
+    if name == "solar-park":
+        assert drawn == {}
+        return
+    home, relay = drawn
+    assert home.startswith("home of ")
+    robot = taken(name).scene.robot(home.split("'")[1])
+    assert drawn[home] == (robot.home[:2], robot.type.part.attributes["communicationRange"])
+    assert "relay" in relay
