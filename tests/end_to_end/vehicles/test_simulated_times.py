@@ -73,6 +73,7 @@ def test_a_simulated_mission_takes_what_a_recorded_one_did(name, tmp_path):
 
 
 @recorded
+@pytest.mark.timeout(900)  # the longest recorded flight takes six minutes at this speed
 @pytest.mark.real_time("faults")
 @pytest.mark.parametrize("name", STEPS)
 def test_simulated_steps_take_what_recorded_ones_did(name, tmp_path):
