@@ -152,6 +152,7 @@ class Flying:
         self.straits: dict[str, Strait] = {}
         self.links: dict[str, str] = {}
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
+        self.waits: dict[str, set[int]] = {}
         self.interrupts = 0.0
         self._changed: dict[tuple[str, str], float | None] = {}
         self._upset: set[tuple[str, str]] = set()
@@ -284,10 +285,15 @@ class Flying:
             px4 = vehicle.firmware is PX4
             plans.set_up(vehicle.observer, file.name, said)
             self.items = plans.upload(vehicle.observer, file, px4=px4)
+            self.waits[robot] = plans.waits_in(file, px4=px4)
             plans.start(vehicle.observer, rover=self.plan.vehicle(robot) == "rover", px4=px4)
 
     def _working(self) -> bool:
         if self.flight.way == PLAN:
+            for robot in self.robots:
+                observer = self.vehicles[robot].observer
+                if observer.item in self.waits[robot] and self._still(robot):
+                    plans.go_on(observer)
             return not all(self._at_rest(robot) for robot in self.robots)
         return any(process.poll() is None for process in self.processes.values())
 

@@ -49,6 +49,22 @@ def upload(observer: Observer, plan: Path, *, px4: bool = False) -> int:
     return len(mission)
 
 
+def waits_in(plan: Path, *, px4: bool = False) -> set[int]:
+    """Return the numbers of the items at which a vehicle waits until its operator lets it go on."""
+    items = json.loads(plan.read_text("utf-8"))["mission"]["items"]
+    first = 0 if px4 else 1
+    return {
+        number
+        for number, item in enumerate(items, start=first)
+        if item["command"] == mavlink.MAV_CMD_NAV_LOITER_UNLIM
+    }
+
+
+def go_on(observer: Observer) -> None:
+    """Let a vehicle that waits in its mission go on to the next item, as an operator does."""
+    observer.send(mavlink.MAVLink_mission_set_current_message(*_address(observer), observer.item + 1))
+
+
 def set_up(observer: Observer, file: str, said: str) -> None:
     """Set a vehicle to what its plan asks for, as operators do; what it does not know is another version's.
 
