@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from mmrs_core.behaviour.program import RobotProgram
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import RobotProgram
 
 Graph: TypeAlias = Sequence[Sequence[int]]
 

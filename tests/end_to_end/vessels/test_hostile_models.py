@@ -32,8 +32,8 @@ def written(folder: Path, old: str, new: str) -> Path:
     [
         ('maxThrust="35.0"', 'maxThrust="NaN"', "pool-auv.xmi:34", "maxThrust is NaN"),
         ('maxThrust="35.0"', 'maxThrust="INF"', "pool-auv.xmi:34", "maxThrust: 'INF': not a number"),
-        (FIGURES, 'operatingThrust="0" maxThrust="0"', "pool-auv.xmi:34", "maxThrust of thruster 'T1' is 0"),
-        (FIGURES, 'operatingThrust="-18" maxThrust="35"', "pool-auv.xmi:34", "of thruster 'T1' is -18"),
+        (FIGURES, 'operatingThrust="0" maxThrust="0"', "pool-auv.xmi:34", "maxThrust of Thruster 'T1' is 0"),
+        (FIGURES, 'operatingThrust="-18" maxThrust="35"', "pool-auv.xmi:34", "of Thruster 'T1' is -18"),
         ('maxThrust="35.0"', 'maxThrust="1e9"', "type 'Pool AUV'", "thruster 0 ('T1'): max_thrust: "),
         ('maxPower="230.0"', 'maxPower="9999"', "robot 'Naiad'", "max_power: 9999.0 is more than 6553.5"),
         ('id="T2"', 'id="T1"', "pool-auv.xmi:40", "'T1' has the identifier of another"),
