@@ -161,9 +161,7 @@ class _Walk:
     def begin(self, step: Step, given: dict[str, _Given]) -> None:
         self.stops.append(self._standing(len(self.stops)))
         self.moments.append((self.now, self.by))
-        latest = self.by + self.longest(self.robot.name, step)
         self.add(step, given)
-        self.by = max(self.by, latest)
         self._learn(step.signals if isinstance(step, Await) else (), given)
 
     def ended(self) -> Timeline:
@@ -174,6 +172,11 @@ class _Walk:
         return Timeline(tuple(self.rides), tuple(self.stops), tuple(self.known), tuple(self.moments))
 
     def add(self, step: Step, given: dict[str, _Given]) -> None:
+        latest = self.by + self.longest(self.robot.name, step)
+        self._add(step, given)
+        self.by = max(self.by, latest)
+
+    def _add(self, step: Step, given: dict[str, _Given]) -> None:
         if isinstance(step, Await):
             self._await(step, given)
         elif isinstance(step, Signal):

@@ -8,7 +8,7 @@ from plain_scenes import CRAWLER, control, photo, road, robot, scene, visit, wit
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.timeline import HomeRelation, timelines_of
-from mmrs_core.scene import Await, Launch, Look, Plan, Policy, RobotPlan, Transit
+from mmrs_core.scene import Await, Launch, Look, Plan, Policy, RobotPlan, Serve, Transit
 from mmrs_core.scene.robots import BACK_SECONDS
 from mmrs_runtime.timing import LegTiming
 
@@ -101,6 +101,20 @@ def test_after_a_choice_a_robot_may_be_as_early_as_its_shorter_arm():
     rides = rides_in(scene([robot()], works, after=after, controls=controls))
     onwards = next(ride for ride in rides if ride.points[-1] == (0.0, 9.0, 20.0))
     assert onwards.late - onwards.early == pytest.approx(sum(onwards.least) + 30.0)
+
+
+@pytest.mark.parametrize("arms", [(), (("f", "a", "windy"), ("f", "b"), ("a", "j"), ("b", "j"), ("j", "z"))])
+def test_what_a_step_takes_longer_than_its_legs_counts_in_the_arms_of_a_choice_too(arms):
+    works = {name: visit((120.0, 0.0, 20.0)) for name in ("a", "b")} | {"z": visit((0.0, 9.0, 20.0))}
+    controls = (control("f", "Fork"), control("j", "Join")) if arms else ()
+    whole = scene([robot()], works, after=list(arms), controls=controls)
+    made, robots = plan(whole), {each.name: each for each in whole.robots}
+    ends = [
+        timelines_of(made, robots, longest=lambda robot, step, most=most: most * isinstance(step, Serve))
+        for most in (0.0, 1000.0)
+    ]
+    (_, usual), (_, longest) = (each["r1"].moments[-1] for each in ends)
+    assert longest > usual + (1900.0 if arms else 2900.0)
 
 
 def test_an_upright_and_a_level_leg_in_a_row_are_one_ride():
