@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
 from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.languages.modelset import model_in
-from mmrs_core.scene import Frame, Position, RobotType
+from mmrs_core.scene import Position, RobotType, Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +32,10 @@ class CrewMember:
 
 @dataclass(frozen=True, slots=True)
 class Crew:
-    """All robots, in the model's order, and what surrounds them: weather and water, by attribute name."""
+    """All robots, in the model's order, and the scene of those whose types are known."""
 
     members: tuple[CrewMember, ...]
-    frame: Frame
-    environment: Mapping[str, float]
+    scene: Scene
 
 
 def crew_in(session: Session, path: Path) -> Crew:
@@ -53,7 +52,9 @@ def crew_in(session: Session, path: Path) -> Crew:
             CrewMember(each.id, types.get(each.type_name), each.home, each.payload, each)
             for each in loaded.program.robots
         ]
-        return Crew(tuple(members), loaded.program.frame, loaded.place.environment or {})
+        known = [robot for robot in loaded.program.robots if robot.type_name in types]
+        program = replace(loaded.program, robots=tuple(known))
+        return Crew(tuple(members), scene_of(program, types, environment=loaded.place.environment))
     scene = CommandStages(session, path).grounded
     members = [CrewMember(each.name, each.type, each.home, each.payload) for each in scene.robots]
-    return Crew(tuple(members), scene.frame, scene.environment)
+    return Crew(tuple(members), scene)

@@ -48,6 +48,7 @@ def faults(flight, simulated):
     [
         ("copter: plan in AUTO", "Alba", 0),
         ("rover: plan in AUTO", "Badger", 0),
+        ("tracked rover: plan in AUTO", "Crawler", 0),
         ("sub: plan in AUTO", "Nereid", 1),
         ("sub: up and down in AUTO", "Nereid", 0),
         ("PX4: plan in AUTO", "Alba", 0),

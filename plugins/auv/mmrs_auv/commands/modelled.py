@@ -31,10 +31,10 @@ def sheets_in(path: Path) -> Mapping[str, Sheet]:
             found[each.name] = sheet_of(
                 each.type,
                 each.name,
-                home=each.home or (0.0, 0.0, crew.frame.surface),
-                surface=crew.frame.surface,
+                home=each.home or (0.0, 0.0, crew.scene.frame.surface),
+                surface=crew.scene.frame.surface,
                 payload=each.payload,
-                density=crew.environment.get("waterDensity"),
+                density=crew.scene.environment.get("waterDensity"),
             )
     if not found:
         raise UnsupportedError(f"{path}: no underwater vehicle")

@@ -15,7 +15,9 @@ from mmrs_core.cli.crews import CrewMember, crew_in
 from mmrs_core.cli.output import tell
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings as CliSettings
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.contributions.rules import RobotKind, robot_kind_of
+from mmrs_core.errors import InfeasibleError, UnsupportedError
+from mmrs_core.scene import Name, Scene
 from mmrs_mavlink.plugin.vehicles import autopilot_of, profile_of, uncarried
 from mmrs_mavlink.sitl.parameters import defaults
 from mmrs_mavlink.sitl.settings import IMITATED, Settings
@@ -54,7 +56,7 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
     if homeless := [each.name for each in crew.members if each.home is None]:
         raise UnsupportedError(f"{path}: no home for {', '.join(homeless)}")
     homes = [each.home[:2] for each in crew.members if each.home is not None]
-    places = [PLACE] * len(homes) if crew.frame.is_local else degrees_of(homes, crew.frame)
+    places = [PLACE] * len(homes) if crew.scene.frame.is_local else degrees_of(homes, crew.scene.frame)
     made = {}
     for each, profile, place, (east, north) in zip(crew.members, profiles, places, homes, strict=True):
         near = tuple(replace(sight, north=sight.north - north, east=sight.east - east) for sight in sights)
@@ -62,8 +64,19 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
         named = autopilot_of(each.type, extensions)
         firmware = named if (profile.rehearsed_as, named) in IMITATED else profile.rehearsed_with
         vehicle = Settings(profile.rehearsed_as, *place, firmware=firmware, sights=near)
+        vehicle = replace(vehicle, spins=profile.drives and _spins(each.name, crew.scene, kinds))
         made[each.name] = _with_battery(vehicle, each)
     return made
+
+
+def _spins(name: str, scene: Scene, kinds: Mapping[Name, RobotKind]) -> bool:
+    """Return whether a robot is known to turn on the spot."""
+    robot = next((each for each in scene.robots if each.name == name), None)
+    kind = robot_kind_of(robot.type, kinds) if robot is not None else None
+    try:
+        return robot is not None and kind is not None and kind.kinematics(robot, scene).turning_radius == 0.0
+    except InfeasibleError:
+        return False
 
 
 def _with_battery(settings: Settings, robot: CrewMember) -> Settings:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import atan2, degrees, hypot, inf
+from math import hypot, inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
 from mmrs_mavlink.sitl.battery import Battery
-from mmrs_mavlink.sitl.body import Body, Vector
+from mmrs_mavlink.sitl.body import Body, Vector, course
 from mmrs_mavlink.sitl.items import ABOVE_SEA, FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
 from mmrs_runtime.controllers.geodesy import metres_per_degree, wrapped
@@ -228,6 +228,7 @@ class SimulatedAutopilot:
             legs = pacing.upright
         body.figures = legs or pacing.step
         body.radius = self._value(self.settings.profile.radii)
+        body.pivots = self._value(self.settings.profile.pivots) if self.settings.spins else inf
         keeps = mode == "auto" and self.settings.profile.autopilot.missions.keeps_speed
         passed = self.stores[MISSION][: self.item] if keeps else []
         speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
@@ -253,7 +254,7 @@ class SimulatedAutopilot:
         """Turn to a place that is not right here."""
         north, east = place[0] - self.body.position[0], place[1] - self.body.position[1]
         if abs(north) + abs(east) > 1.0:
-            self.body.wanted_heading = degrees(atan2(east, north)) % 360.0
+            self.body.wanted_heading = course(self.body.position, place)
 
     def enter(self, *names: str) -> None:
         """Enter the first of these modes that it has and may enter."""

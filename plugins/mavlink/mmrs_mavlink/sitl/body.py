@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import cos, exp, hypot, inf, radians, sin, sqrt
+from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
 from mmrs_runtime.timing import LegTiming
 
@@ -111,6 +111,7 @@ class Body:
         driven: commanded speeds ahead, aside and up, and turn rate, degrees per second; None: none.
         curved: whether it takes legs as S-curves. figures: how it takes them, or else approaches its target.
         radius: metres from a corner within which it passes.
+        pivots: degrees off its heading beyond which it turns on the spot before a leg.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
         rested: seconds since the end of its last leg; less than 0: until then.
     """
@@ -124,6 +125,7 @@ class Body:
     driven: tuple[float, float, float, float] | None = None
     curved: bool = False
     radius: float = 2.0
+    pivots: float = inf
     wanted_heading: float | None = None
     speed: float = 5.0
     climb: float = inf
@@ -200,7 +202,7 @@ class Body:
             if self.pace > STANDING:
                 return False
             self._legs, self._start, self._goal = [self._leg(self.position, target)], self.position, target
-            self._legs[0].elapsed = -self.figures.starting
+            self._legs[0].elapsed = -self.figures.starting - self._pivoting(target)
         self._begin_turn(target)
         rate = 1.0 / (1.0 + max(map(self._slowness, self._legs)))
         for leg in self._legs:
@@ -216,6 +218,14 @@ class Body:
             self.velocity = plus(self.velocity, leg.path, rate * speed / leg.length)
         self.position = position
         return True
+
+    def _pivoting(self, target: Vector) -> float:
+        """Begin to turn to a target; return the seconds that it does so on the spot."""
+        if self.pivots == inf:
+            return 0.0
+        self.wanted_heading = course(self.position, target)
+        left = abs(turned(self.heading, self.wanted_heading))
+        return left / self.turn_rate if left > self.pivots else 0.0
 
     def _slowness(self, leg: CurvedLeg) -> float:
         """Return how much longer a second of a leg takes, whose curve waits while thrust is built up."""
@@ -322,9 +332,19 @@ class Body:
     def _turn(self, step: float) -> None:
         if self.wanted_heading is None:
             return
-        left = (self.wanted_heading - self.heading + 180.0) % 360.0 - 180.0
+        left = turned(self.heading, self.wanted_heading)
         limit = self.turn_rate * step
         self.heading = (self.heading + max(-limit, min(limit, left))) % 360.0
+
+
+def course(start: Vector, end: Vector) -> float:
+    """Return the degrees clockwise from north of the way between two places."""
+    return degrees(atan2(end[1] - start[1], end[0] - start[0])) % 360.0
+
+
+def turned(before: float, after: float) -> float:
+    """Return the turn from one heading to another, degrees clockwise."""
+    return (after - before + 180.0) % 360.0 - 180.0
 
 
 def _along(leg: CurvedLeg, push: Vector) -> float:

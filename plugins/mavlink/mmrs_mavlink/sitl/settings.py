@@ -31,6 +31,7 @@ class Settings:
         energy: seconds armed until the battery is empty. capacity: of the battery, mAh; cells: of it.
         recharge: seconds disarmed until the battery is full; 0: never.
         tells_battery: whether it measures its battery.
+        spins: whether a rover can turn on the spot.
         wind: metres per second, and degrees that it comes from.
         values: sensors by name, published as NAMED_VALUE_FLOAT: functions of the time in seconds.
         sights: objects that its photos can show, in metres from its home.
@@ -53,6 +54,7 @@ class Settings:
     cells: int = 3
     recharge: float = 0.0
     tells_battery: bool = True
+    spins: bool = False
     wind: tuple[float, float] = (0.0, 0.0)
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     sights: tuple[Sight, ...] = ()

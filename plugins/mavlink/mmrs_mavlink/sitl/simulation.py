@@ -8,7 +8,7 @@ from math import dist
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.autopilot import CHANGE_SPEED, MANUAL, SimulatedAutopilot
-from mmrs_mavlink.sitl.body import Vector
+from mmrs_mavlink.sitl.body import Vector, course, turned
 from mmrs_mavlink.sitl.failsafes import watch
 from mmrs_mavlink.sitl.items import MISSION, MOVING, RALLY, StoredItem
 
@@ -265,8 +265,9 @@ def _onward(pilot: SimulatedAutopilot, item: StoredItem) -> Vector | None:
         if following.command in STOPPING:
             return None
         if following.command in MOVING and (following.x or following.y):
-            place = pilot.place_of(following)
-            return place if place != pilot.place_of(item) else None
+            before, corner, after = pilot.body.position, pilot.place_of(item), pilot.place_of(following)
+            sharp = abs(turned(course(before, corner), course(corner, after))) > pilot.body.pivots
+            return None if sharp or after == corner else after
     return None
 
 
