@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from mmrs_core.contributions.rules import most_specific
+from mmrs_core.scene.primitives import CONTEXT, MISSION
 
 if TYPE_CHECKING:
     from mmrs_core.drawings.drawing import Property
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _LONGEST_ICON = 2
-_MISSION = "urn:mmrs:mission:1.0"
-_CONTEXT = "urn:mmrs:context:1.0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,15 +109,15 @@ def _band(corridor: Part) -> tuple[Ring, ...]:
 
 
 CORE_SYMBOLS = (
-    MapSymbol((_MISSION, "Fork"), "fork", "", "⋔"),
-    MapSymbol((_MISSION, "Join"), "join", "", "⋈"),
+    MapSymbol((MISSION, "Fork"), "fork", "", "⋔"),
+    MapSymbol((MISSION, "Join"), "join", "", "⋈"),
     MapSymbol(
-        (_CONTEXT, "Corridor"),
+        (CONTEXT, "Corridor"),
         "corridor",
         "",
         "⇄",
         ("width", "minHeight", "maxHeight", "use", "robotTypes"),
         _band,
     ),
-    MapSymbol((_CONTEXT, "Relay"), "relay", "", "⌁", ("range",), initial={"range": 1000.0}),
+    MapSymbol((CONTEXT, "Relay"), "relay", "", "⌁", ("range",), initial={"range": 1000.0}),
 )

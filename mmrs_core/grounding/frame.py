@@ -10,9 +10,9 @@ from mmrs_core.grounding.features import child, children, literal, number, text
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, descendants, is_kind, label_of, path_of, place_of
 from mmrs_core.scene import AltitudeReference, Frame
+from mmrs_core.scene.primitives import BEHAVIOUR
+from mmrs_core.scene.primitives import MISSION as MISSION
 
-MISSION = "urn:mmrs:mission:1.0"
-BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 REFERENCES: tuple[AltitudeReference, ...] = get_args(AltitudeReference)
 NOWHERE = "GND001"
 """Code of the faults that keep a coordinate from having a place."""

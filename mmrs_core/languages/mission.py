@@ -5,14 +5,8 @@ The classes come from ``mission.ecore`` when they are first asked for; the stub 
 
 from __future__ import annotations
 
-from mmrs_core.languages.registry import core_registry
+from mmrs_core.languages.registry import members_of
+from mmrs_core.scene.primitives import MISSION
 
-NS_URI = "urn:mmrs:mission:1.0"
-
-
-def __getattr__(name: str) -> object:
-    return globals().setdefault(name, core_registry().package(NS_URI).member(name))
-
-
-def __dir__() -> list[str]:
-    return sorted(("NS_URI", *core_registry().package(NS_URI).members))
+NS_URI = MISSION
+__getattr__, __dir__ = members_of(NS_URI)

@@ -200,6 +200,14 @@ def _core_registry() -> Registry:
     return Registry(_assemble(sources, ()))
 
 
+def members_of(ns_uri: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+    """Return the ``__getattr__`` and ``__dir__`` of a module that stands for a language of the core."""
+    return (
+        cache(lambda name: core_registry().package(ns_uri).member(name)),
+        lambda: sorted(("NS_URI", *core_registry().package(ns_uri).members)),
+    )
+
+
 def registry_with(
     sources: Iterable[MetamodelSource],
     migrations: Iterable[Migration] = (),

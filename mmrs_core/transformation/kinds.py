@@ -14,13 +14,13 @@ from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
 from mmrs_core.scene.headings import bearing
+from mmrs_core.scene.primitives import BEHAVIOUR
 from mmrs_core.scene.timing import MoveSeconds, noticing
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
-BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 ANYWHERE = frozenset({"grounded", "airborne", "moving"})
 AFLOAT = frozenset({"airborne", "moving"})
 

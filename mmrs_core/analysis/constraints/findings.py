@@ -1,4 +1,4 @@
-"""How breaches are put into words, and the names of the metaclasses that constraints are about."""
+"""How breaches are put into words, and the names of the languages that constraints are about."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from mmrs_core.contributions.constraints import Finding
 from mmrs_core.grounding.features import text
 from mmrs_core.languages.element import Element, Unknown, label_of, metaclass_of, path_of
 from mmrs_core.languages.naming import nearest
-
-MISSION = "urn:mmrs:mission:1.0"
-CONTEXT = "urn:mmrs:context:1.0"
-ROBOT = "urn:mmrs:robot:1.0"
-BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+from mmrs_core.scene.primitives import BEHAVIOUR as BEHAVIOUR
+from mmrs_core.scene.primitives import CONTEXT as CONTEXT
+from mmrs_core.scene.primitives import MISSION as MISSION
+from mmrs_core.scene.primitives import ROBOT as ROBOT
 
 
 def called(element: Element) -> str:

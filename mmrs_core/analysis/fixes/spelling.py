@@ -12,6 +12,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.named import LONGEST_COMPARED, NamedElements
 from mmrs_core.languages.references.spelling import Name, is_address, references_in, spelt
 from mmrs_core.languages.xmi.markup import Tag
+from mmrs_core.scene.primitives import BEHAVIOUR
 
 _SHORT = 5
 """Letters below which two wrong ones make too much of a word."""
@@ -63,7 +64,6 @@ def _swapped(one: str, other: str) -> int:
     return 1 if one[i] == other[j] and one[j] == other[i] else 3
 
 
-BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 _TYPES = ("xsi:type", "xmi:type")
 
 

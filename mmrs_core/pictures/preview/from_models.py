@@ -44,8 +44,8 @@ from mmrs_core.pictures.preview.picture import (
     Zone,
 )
 from mmrs_core.scene import Name, Point, Position, RobotType, Scene, Task
+from mmrs_core.scene.primitives import ROBOT
 
-_ROBOT = "urn:mmrs:robot:1.0"
 _AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 _ELEMENTS = ("elements", "corridors")
 _QUOTED = re.compile(r"'([^']+)'")
@@ -130,7 +130,7 @@ class _Drawing:
         """Return the clearance of robots of a type; None where it is unknown or contradictory."""
         robot_type = self._type(type_name)
         roots = (root for model in self._models.models for root in model.roots)
-        named = [root for root in roots if is_kind(root, _ROBOT, "Robot") and text(root, "name") == type_name]
+        named = [root for root in roots if is_kind(root, ROBOT, "Robot") and text(root, "name") == type_name]
         size_in_doubt = any(
             "size" in problem.place.path or problem.message.startswith("size")
             for root in named

@@ -13,15 +13,16 @@ from hypothesis import strategies as st
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
+from mmrs_core.scene.primitives import BEHAVIOUR, CONTEXT, MISSION
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 from mmrs_core.testing.models import breaches, findings
 
 Roots = Callable[[Registry], Iterable[Element]]
 WHOLE = (
-    ("urn:mmrs:mission:1.0", "Mission"),
-    ("urn:mmrs:context:1.0", "Context"),
-    ("urn:mmrs:behaviour:1.0", "Behaviour"),
+    (MISSION, "Mission"),
+    (CONTEXT, "Context"),
+    (BEHAVIOUR, "Behaviour"),
 )
 RELAXED = settings(
     deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]

@@ -6,10 +6,11 @@ import pytest
 
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.plugins import load_plugins
+from mmrs_core.scene.primitives import BEHAVIOUR, MISSION
 from mmrs_core.testing.conformance.declared import Conformance, declared
 
-TASK = ("urn:mmrs:mission:1.0", "Task")
-MOVE = ("urn:mmrs:behaviour:1.0", "Move")
+TASK = (MISSION, "Task")
+MOVE = (BEHAVIOUR, "Move")
 
 
 class PluginConformance(Conformance):

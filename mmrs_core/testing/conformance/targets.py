@@ -14,10 +14,11 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities.judging import TargetCapability, capabilities_of, lost, probes
 from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
+from mmrs_core.scene.primitives import BEHAVIOUR
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import installed, two_robots
 
-UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), ("urn:mmrs:behaviour:1.0", "Move"))
+UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), (BEHAVIOUR, "Move"))
 
 LOST = """these make no difference to the files:
 write them, refuse them by name in Target.refusals, or say in Target.capabilities why nothing is lost"""

@@ -11,6 +11,7 @@ from mmrs_core.grounding.features import text
 from mmrs_core.languages.element import Element, descendants, held, is_kind, label_of, metaclass_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi
+from mmrs_core.scene.primitives import BEHAVIOUR, CONTEXT, MISSION
 from mmrs_flyaq.findings import Category, Record
 from mmrs_flyaq.rules.rules_file import ROBOT_TYPE
 from mmrs_flyaq.sources.nodes import SourceNode
@@ -53,9 +54,9 @@ def _pair(one: object, other: object) -> bool:
 
 
 _ROLES = {
-    "mission": ("urn:mmrs:mission:1.0", "Mission"),
-    "context": ("urn:mmrs:context:1.0", "Context"),
-    "behaviour": ("urn:mmrs:behaviour:1.0", "Behaviour"),
+    "mission": (MISSION, "Mission"),
+    "context": (CONTEXT, "Context"),
+    "behaviour": (BEHAVIOUR, "Behaviour"),
 }
 _UNFIT = re.compile(r"[^\w.-]+")
 

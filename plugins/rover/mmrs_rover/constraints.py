@@ -10,6 +10,7 @@ from shapely import Point
 
 from mmrs_core.analysis.constraints.ranges import Range, at_least_zero, every
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, Sketch, polygon_of, sketch_of
+from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.coordinates import heights_of_task
@@ -119,9 +120,6 @@ def _harmless(terrain: Element, models: ModelSet) -> Iterator[Finding]:
     if not any(number(terrain, feature) for feature, _, _ in LIMITS):
         names = ", ".join(feature for feature, _, _ in LIMITS)
         yield Finding(terrain, f"terrain '{label_of(terrain)}' states none of {names}: it bars no robot")
-
-
-BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 
 
 def _overruns_corners(robot: Element, models: ModelSet) -> Iterator[Finding]:
