@@ -12,7 +12,8 @@ from collections.abc import Iterator, Mapping
 from importlib.resources import files as files_of
 from pathlib import Path
 
-from mmrs_core.behaviour.program import Move, RobotProgram, Transition
+from mmrs_core.behaviour.program import Move, RobotProgram
+from mmrs_core.behaviour.walk import in_order, successors
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import RobotContext, homeless, require_home
@@ -114,25 +115,12 @@ def _of_move(move: Move, context: RobotContext, variables: Variables) -> Iterato
 
 def _rings(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
     """Yield which moves lead back to one from which they come."""
-    state: dict[int, str] = {}
-    path: list[tuple[int, Iterator[int]]] = [(robot.start, iter(_ways(robot.transitions.get(robot.start))))]
-    state[robot.start] = "open"
-    while path:
-        index, ways = path[-1]
-        way = next(ways, None)
-        if way is None:
-            state[index] = "closed"
-            path.pop()
-        elif state.get(way) == "open":
-            again = robot.moves[way].id
-            yield f"{context.label(robot.moves[index])}: '{again}' comes round again, which no helm does"
-        elif way not in state:
-            state[way] = "open"
-            path.append((way, iter(_ways(robot.transitions.get(way)))))
-
-
-def _ways(transition: Transition | None) -> tuple[int, ...]:
-    return transition.next_moves if transition is not None else ()
+    ways, place = successors(robot), {move: number for number, move in enumerate(in_order(robot))}
+    for index, number in place.items():
+        for way in ways[index]:
+            if place[way] <= number:
+                again = robot.moves[way].id
+                yield f"{context.label(robot.moves[index])}: '{again}' comes round again, which no helm does"
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
