@@ -6,29 +6,15 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeAlias
 
+from mmrs_runtime import controllers
+from mmrs_runtime.controllers import *  # noqa: F403  # all that programs of any vehicle say
+from mmrs_runtime.controllers import GoTo, NoEffect, Notify, Object, Place, Report
 from mmrs_runtime.controllers import vocabulary as words
-from mmrs_runtime.controllers.vocabulary import Choose as Choose
-from mmrs_runtime.controllers.vocabulary import Geographic as Geographic
-from mmrs_runtime.controllers.vocabulary import GoTo as GoTo
-from mmrs_runtime.controllers.vocabulary import Hold as Hold
-from mmrs_runtime.controllers.vocabulary import Land as Land
-from mmrs_runtime.controllers.vocabulary import Local as Local
-from mmrs_runtime.controllers.vocabulary import Look as Look
-from mmrs_runtime.controllers.vocabulary import NoEffect as NoEffect
-from mmrs_runtime.controllers.vocabulary import Notify as Notify
-from mmrs_runtime.controllers.vocabulary import Object as Object
-from mmrs_runtime.controllers.vocabulary import Place as Place
-from mmrs_runtime.controllers.vocabulary import Policy as Policy
-from mmrs_runtime.controllers.vocabulary import Recharge as Recharge
-from mmrs_runtime.controllers.vocabulary import Report as Report
-from mmrs_runtime.controllers.vocabulary import Skip as Skip
-from mmrs_runtime.controllers.vocabulary import Start as Start
-from mmrs_runtime.controllers.vocabulary import Step as Step
-from mmrs_runtime.controllers.vocabulary import Stop as Stop
-from mmrs_runtime.controllers.vocabulary import Then as Then
-from mmrs_runtime.controllers.vocabulary import Turn as Turn
 
 from .profiles import VehicleProfile, profile_for
+
+__all__ = ["Action", "Charge", "Measure", "Operate", "Robot", "Run", "TakeOff", "Travel"]
+__all__ += controllers.__all__
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +22,6 @@ class TakeOff:
     """Climb straight up to a height above home."""
 
     height: float
-
-
-Movement: TypeAlias = Start | Stop | TakeOff | Land | GoTo | Hold | Recharge | Turn | Skip
 
 
 @dataclass(frozen=True, slots=True)
