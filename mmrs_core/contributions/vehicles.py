@@ -39,7 +39,8 @@ class VehicleInput:
     """All that a vehicle may use.
 
     Attributes:
-        options: as in ``--backend-option``, those of this robot.
+        options: as in ``--backend-option``, those of this robot; `read_options` of
+            `mmrs_core.contributions.backend_options` reads them into a dataclass.
         policies: of the robot, in the order in which they go: the first for an event counts.
         areas: of the context as drawn, and those that its elements make; empty where none was given.
         live: of a run in real time; None in simulated time.

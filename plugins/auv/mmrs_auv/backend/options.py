@@ -6,13 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
-from typing import TypeVar
 
 from auv_vessel.api import FIRST_SIGN
 from auv_vessel.body.surroundings import Surroundings, from_json
-from mmrs_core.errors import UnreadableError, UnsupportedError
-
-Options = TypeVar("Options")
+from mmrs_core.contributions.backend_options import one_of, read_options, switch, whole
+from mmrs_core.errors import UnreadableError
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,50 +75,18 @@ def rehearsing(given: Mapping[str, str]) -> Rehearsing:
     """Return the options of the backend can-sim.
 
     Raises:
-        UnsupportedError: if there is no such option, or its value makes no sense.
+        UsageError: if there is no such option, or its value makes no sense.
     """
-    return _read(Rehearsing, "can-sim", given)
+    return read_options(Rehearsing, "can-sim", given, _READERS)
 
 
 def connecting(given: Mapping[str, str]) -> Connecting:
     """Return the options of the backend can.
 
     Raises:
-        UnsupportedError: if there is no such option, or its value makes no sense.
+        UsageError: if there is no such option, or its value makes no sense.
     """
-    return _read(Connecting, "can", given)
-
-
-def _read(options: Callable[..., Options], backend: str, given: Mapping[str, str]) -> Options:
-    known = {name.replace("_", "-"): name for name in options.__dataclass_fields__}  # type: ignore[attr-defined]
-    values: dict[str, object] = {}
-    for key, text in given.items():
-        if key not in known:
-            names = ", ".join(sorted(known))
-            raise UnsupportedError(
-                f"option '{key}': backend '{backend}' has none of that name; it has {names}"
-            )
-        try:
-            values[known[key]] = _VALUES.get(key, _number)(text)
-        except ValueError as error:
-            raise UnsupportedError(f"option '{key}': {error}") from error
-    return options(**values)
-
-
-def _number(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = float("nan")
-    if not isfinite(number) or number < 0.0:
-        raise ValueError(f"{text} is not a number from 0 on")
-    return number
-
-
-def _whole(text: str) -> int:
-    if not text.isdecimal() or len(text) > 99:
-        raise ValueError(f"{text} is not a whole number from 0 on")
-    return int(text)
+    return read_options(Connecting, "can", given, _READERS)
 
 
 def pair(text: str) -> tuple[float, float]:
@@ -138,21 +104,6 @@ def pair(text: str) -> tuple[float, float]:
     return north, east
 
 
-def _switch(text: str) -> bool:
-    if text not in ("yes", "no"):
-        raise ValueError(f"{text} is neither yes nor no")
-    return text == "yes"
-
-
-def _one_of(*words: str) -> Callable[[str], str]:
-    def read(text: str) -> str:
-        if text not in words:
-            raise ValueError(f"{text} is none of {', '.join(words)}")
-        return text
-
-    return read
-
-
 def _surroundings(text: str) -> Surroundings:
     path = Path(text)
     try:
@@ -161,17 +112,17 @@ def _surroundings(text: str) -> Surroundings:
         raise UnreadableError(f"{path}: {error.strerror or error}") from error
 
 
-_VALUES: Mapping[str, Callable[[str], object]] = {
-    "seed": _whole,
-    "noise": _switch,
+_READERS: Mapping[str, Callable[[str], object]] = {
+    "seed": whole,
+    "noise": switch,
     "current": pair,
     "start": pair,
     "surroundings": _surroundings,
-    "objects": _one_of("expected", "seen", "cameras"),
+    "objects": one_of("expected", "seen", "cameras"),
     "interface": str,
     "channel": str,
-    "bit-rate": _whole,
-    "clock": _one_of("real", "bus"),
-    "detections": _whole,
+    "bit-rate": whole,
+    "clock": one_of("real", "bus"),
+    "detections": whole,
     "inject": str,
 }

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
-from math import inf
+from dataclasses import dataclass
 from pathlib import Path
 
-from mmrs_core.errors import UsageError
-from mmrs_mavlink.options import SWITCHES
+from mmrs_core.contributions.backend_options import count, one_of, positive, read_options, switch
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,67 +45,20 @@ class LinkOptions:
 
 
 def link_options(given: Mapping[str, str]) -> LinkOptions:
-    """Return the options by their keys, hyphens instead of underscores.
+    """Return the options by their keys.
 
     Raises:
         UsageError: if there is no such option, or its value makes no sense.
     """
-    known = {field.name.replace("_", "-"): field.name for field in fields(LinkOptions)}
-    unknown = sorted(set(given) - set(known))
-    if unknown:
-        raise UsageError(
-            f"option '{unknown[0]}': backend 'mavlink' has none of that name; it has {', '.join(known)}"
-        )
-    values = {known[key]: _value(key, text) for key, text in given.items()}
-    return LinkOptions(**values)  # type: ignore[arg-type]
+    return read_options(LinkOptions, "mavlink", given, _READERS)
 
 
-def _value(key: str, text: str) -> object:
-    try:
-        return _READ.get(key, _positive)(text)
-    except ValueError as error:
-        raise UsageError(f"option '{key}': {error}") from error
-
-
-def _positive(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
-    if not 0.0 < number < inf:
-        raise ValueError(f"'{text}' is not a positive number")
-    return number
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or len(text) > 9 or int(text) < 1:
-        raise ValueError(f"'{text}' is not a number from 1 on")
-    return int(text)
-
-
-def _switch(text: str) -> bool:
-    if text not in SWITCHES:
-        raise ValueError(f"{text} is neither yes nor no")
-    return SWITCHES[text]
-
-
-def _names(text: str) -> frozenset[str]:
-    return frozenset(filter(None, text.split(",")))
-
-
-def _objects(text: str) -> str:
-    if text != "expected":
-        raise ValueError(f"{text}: objects can only be taken to be where they are 'expected'")
-    return text
-
-
-_READ: Mapping[str, Callable[[str], object]] = {
-    "tries": _count,
-    "fence": _switch,
-    "device-check": _switch,
-    "battery-check": _switch,
-    "try-devices": _names,
-    "objects": _objects,
+_READERS: Mapping[str, Callable[[str], object]] = {
+    **dict.fromkeys(("patience", "acceptance", "home-tolerance", "answer-seconds", "item-seconds"), positive),
+    **dict.fromkeys(("fence", "device-check", "battery-check"), switch),
+    "tries": count,
+    "try-devices": lambda text: frozenset(filter(None, text.split(","))),
+    "objects": one_of("expected"),
     "signing-key": Path,
     "inject": str,
 }
