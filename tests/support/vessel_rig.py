@@ -17,6 +17,8 @@ from auv_vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 
+_GIVEN_UP = frozenset(EMERGENCIES.values())
+
 
 class Rig:
     """Vehicle, controllers, movement and a decision centre that a test commands.
@@ -102,7 +104,7 @@ class Rig:
                 numbers[number] = float(found.values["Thrust"])
                 if numbers[number] != 0.0 or (kind == "command" and found.values["Enable"]):
                     self.pushed[kind] = now
-        if frame.id in EMERGENCIES.values():
+        if frame.id in _GIVEN_UP:
             found = self._listener.decode(frame)
             assert found is not None
             self.emergencies.append((now, str(found.values["Reason"])))

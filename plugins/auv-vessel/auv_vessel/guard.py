@@ -17,7 +17,7 @@ from auv_vessel.wire.catalogue import (
     STATUS_BASE,
     VEHICLE,
 )
-from auv_vessel.wire.frame import Frame, check_of
+from auv_vessel.wire.frame import Frame, check_of, is_sound
 
 LATE = 16
 """Frames by which one may come late, as over a network, and still be of the same sender."""
@@ -57,19 +57,19 @@ class Senders:
         """Take a frame that another node said; one whose check is wrong may be any, damaged."""
         if self.fault or frame.extended:
             return
-        data = frame.data
-        if len(data) < 2 or check_of(frame.id, data[:-1]) != data[-1]:
+        id, data = frame.id, frame.data
+        if len(data) < 2 or not is_sound(id, data):
             return
-        if frame.id in self._own:
+        counter = self._counters.get(id)
+        if counter is not None:
+            if counter.is_anothers(data, now):
+                self.fault = f"two nodes say {name_of(id)}, which only one is to say"
+        elif id not in self._own:
+            self._counters[id] = _Counter(data, now)
+        else:
             self._mine.append(now)
             if len(self._mine) == STRAYS and now - self._mine[0] <= FORGOTTEN:
-                self.fault = f"another node says {name_of(frame.id)}, which only this one is to say"
-            return
-        counter = self._counters.get(frame.id)
-        if counter is None:
-            self._counters[frame.id] = _Counter(data, now)
-        elif counter.is_anothers(data, now):
-            self.fault = f"two nodes say {name_of(frame.id)}, which only one is to say"
+                self.fault = f"another node says {name_of(id)}, which only this one is to say"
 
 
 class _Counter:

@@ -12,7 +12,7 @@ from typing import Literal, Protocol
 from auv_vessel.guard import Guard
 from auv_vessel.node import Node
 from auv_vessel.wire.catalogue import CLOCK_ID, NODES
-from auv_vessel.wire.frame import Frame, check_of
+from auv_vessel.wire.frame import Frame, check_of, is_sound
 
 MICROSECONDS = 1_000_000
 CATCH_UP = 5
@@ -213,7 +213,7 @@ def clock_time(frame: Frame) -> float | None:
 
 
 def _time_in(data: bytes) -> float | None:
-    if len(data) != 6 or check_of(CLOCK_ID, data[:-1]) != data[-1]:
+    if len(data) != 6 or not is_sound(CLOCK_ID, data):
         return None
     return int.from_bytes(data[:4], "little") / 1000.0
 

@@ -272,14 +272,12 @@ def _thrust(body: Body, depth: float, down: Vector, thrusts: Sequence[float]) ->
         if not deep:
             force *= max(0.0, min(1.0, (depth + _dot(down, jet.position)) / _DRAWS_AIR))
         a, b, c, d, e, f = jet.wrench
-        x, y, z, k, m, n = (
-            x + a * force,
-            y + b * force,
-            z + c * force,
-            k + d * force,
-            m + e * force,
-            n + f * force,
-        )
+        x += a * force
+        y += b * force
+        z += c * force
+        k += d * force
+        m += e * force
+        n += f * force
     return x, y, z, k, m, n
 
 

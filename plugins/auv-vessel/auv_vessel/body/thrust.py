@@ -13,7 +13,12 @@ _LIKE_A_PROPELLER = 1.5  # power by thrust, of an ideal propeller at rest
 
 def watts_of(thruster: Thruster, thrust: float) -> float:
     """Return what a thruster draws at a thrust, newtons; see `curve_of`."""
-    watts, newtons, exponent = curve_of(thruster)
+    return watts_by(curve_of(thruster), thrust)
+
+
+def watts_by(curve: tuple[float, float, float], thrust: float) -> float:
+    """Return what a thruster of this curve draws at a thrust, newtons; see `curve_of`."""
+    watts, newtons, exponent = curve
     drawn: float = watts * (abs(thrust) / newtons) ** exponent
     return drawn
 

@@ -19,7 +19,7 @@ from auv_vessel.body.dynamics import (
 from auv_vessel.body.rotation import angles_of, of_angles, rows_of, to_body
 from auv_vessel.body.sensing import SENSORS, Faults, Sensing, Truth, antenna_of
 from auv_vessel.body.surroundings import Surroundings
-from auv_vessel.body.thrust import Drive, Propulsion, watts_of
+from auv_vessel.body.thrust import Drive, Propulsion, curve_of, watts_by
 from auv_vessel.sheet import Sheet, Vector
 from auv_vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE, VEHICLE, messages_of
 from auv_vessel.wire.codec import Codec, Received, Value
@@ -89,6 +89,7 @@ class Vehicle:
         attitude = of_angles(0.0, 0.0, sheet.heading if heading is None else heading)
         self._state = at_rest(self._laden, begin, attitude)
         self._propulsion = Propulsion(sheet, STEP)
+        self._curves = [curve_of(each) for each in sheet.thrusters]
         self._sensing = Sensing(sheet, surroundings, seed)
         self._antenna = antenna_of(sheet)
         self._watts = sheet.hotel
@@ -197,7 +198,7 @@ class Vehicle:
         wanted = self._thrusts()
         self._state = step(self._body, self._state, self._propulsion.step(wanted), STEP)
         self._steps += 1
-        drawn = [watts_of(each, thrust) for each, thrust in zip(self._sheet.thrusters, wanted, strict=True)]
+        drawn = [watts_by(curve, thrust) for curve, thrust in zip(self._curves, wanted, strict=True)]
         self._watts = self._sheet.hotel + sum(drawn)
         self.charge = max(0.0, self.charge - self._watts * STEP)
         if self.charge <= 0.0:
@@ -255,7 +256,7 @@ class Vehicle:
             return {"State": state, "Uptime": self._steps * STEP, "Reason": self._reason}
         number = int(name.removeprefix("Thruster").removesuffix("Status"))
         drive = self.drives[number]
-        watts = watts_of(self._sheet.thrusters[number], drive.thrust)
+        watts = watts_by(self._curves[number], drive.thrust)
         return {"Thrust": drive.thrust, "Power": watts, "Drive": drive.state}
 
     def _encoded(self, name: str, values: Mapping[str, Value]) -> Frame:

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, floor
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from auv_vessel.refusals import refuse
 from auv_vessel.sheet import Sheet, Thruster
@@ -272,8 +272,7 @@ _COUNTER = Field(SEQUENCE, 8, high=255.0, comment="one more with every frame of 
 _CHECK = Field(CHECK, 8, high=255.0, comment="CRC-8 SAE J1850 over the identifier (two bytes) and all before")
 
 
-@dataclass(frozen=True, slots=True)
-class Slot:
+class Slot(NamedTuple):
     """A field in its place.
 
     Attributes:
@@ -291,9 +290,16 @@ class Slot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """A message's fields by name, its counter and check last if it is guarded, and its length in bytes."""
+    """Where a message's fields lie.
+
+    Attributes:
+        own: its fields by name, without counter and check.
+        slots: all of them, counter and check last if it is guarded.
+        length: bytes.
+    """
 
     message: Message
+    own: Mapping[str, Slot]
     slots: Mapping[str, Slot]
     length: int
 
@@ -301,17 +307,17 @@ class Layout:
 @cache
 def layout_of(message: Message) -> Layout:
     """Return where a message's fields lie; counter and check have whole bytes to themselves."""
-    slots: dict[str, Slot] = {}
+    own: dict[str, Slot] = {}
     start = 0
     for field in message.fields:
-        slots[field.name] = Slot(field, start, (1 << field.bits) - 1, *_bounds(field))
+        own[field.name] = Slot(field, start, (1 << field.bits) - 1, *_bounds(field))
         start += field.bits
-    length = (start + 7) // 8
+    slots, length = dict(own), (start + 7) // 8
     if message.guarded:
         for field in (_COUNTER, _CHECK):
             slots[field.name] = Slot(field, length * 8, 255, 0, 255)
             length += 1
-    return Layout(message, slots, length)
+    return Layout(message, own, slots, length)
 
 
 def _bounds(field: Field) -> tuple[int, int]:

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import NamedTuple, NoReturn, TypeAlias
 
 from auv_vessel.sheet import Sheet
-from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Layout, Message, Slot, layout_of, messages_of
-from auv_vessel.wire.frame import Frame, check_of
+from auv_vessel.wire.catalogue import Layout, Message, Slot, layout_of, messages_of
+from auv_vessel.wire.frame import Frame, check_of, is_sound
 
 Value: TypeAlias = float | str | bool
 
@@ -87,7 +87,7 @@ class _Coding:
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
         self.message: Message = layout.message
-        self._own = {name: slot for name, slot in layout.slots.items() if name not in (SEQUENCE, CHECK)}
+        self._own = layout.own
         self._own_length = layout.length - len(layout.slots) + len(self._own)
         self._sequence = 255
 
@@ -109,7 +109,7 @@ class _Coding:
         return Frame(self.message.id, data + bytes((check_of(self.message.id, data),)))
 
     def _raw(self, slot: Slot, value: Value) -> int:
-        field = slot.field
+        field, _, _, least, most = slot
         if field.names:
             if value not in field.names:
                 raise ValueError(self._about(slot, value, f"expected one of {', '.join(field.names)}"))
@@ -117,7 +117,11 @@ class _Coding:
         if isinstance(value, str) or not isfinite(value) or not field.low <= value <= field.high:
             wanted = f"{field.low:g} to {field.high:g}"
             raise ValueError(self._about(slot, value, f"expected {wanted} {field.unit}".rstrip()))
-        return min(max(_nearest(value / field.scale), slot.low), slot.high)
+        number = value / field.scale
+        whole = int(number)  # halves away from zero, as C's lround and Ada's rounding have it
+        if abs(number - whole) >= 0.5:
+            whole += 1 if number > 0 else -1
+        return least if whole < least else most if whole > most else whole
 
     def _about(self, slot: Slot, value: Value, wanted: str) -> str:
         return f"{self.message.name}.{slot.field.name}: {value!r}: {wanted}"
@@ -135,32 +139,18 @@ def _received(layout: Layout, data: bytes) -> Received | None:
     guarded = layout.message.guarded
     if len(data) != layout.length:
         return None
-    if guarded and check_of(layout.message.id, data[:-1]) != data[-1]:
+    if guarded and not is_sound(layout.message.id, data):
         return None
     bits = int.from_bytes(data, "little")
     values: dict[str, Value] = {}
-    for name, slot in layout.slots.items():
-        if name in (SEQUENCE, CHECK):
-            continue
-        number = bits >> slot.start & slot.mask
-        if slot.field.signed and number > slot.mask >> 1:
-            number -= slot.mask + 1
-        if not slot.low <= number <= slot.high:
+    for name, slot in layout.own.items():
+        field, start, mask, low, high = slot
+        number = bits >> start & mask
+        if field.signed and number > mask >> 1:
+            number -= mask + 1
+        if not low <= number <= high:
             return None
-        values[name] = _meaning(slot, number)
+        values[name] = (
+            field.names[number] if field.names else bool(number) if field.bits == 1 else number * field.scale
+        )
     return Received(layout.message.name, MappingProxyType(values), data[-2] if guarded else None)
-
-
-def _nearest(number: float) -> int:
-    """Return the nearest whole number, halves away from zero, as C's lround and Ada's rounding have it."""
-    whole = int(number)
-    if abs(number - whole) >= 0.5:
-        return whole + (1 if number > 0 else -1)
-    return whole
-
-
-def _meaning(slot: Slot, number: int) -> Value:
-    field = slot.field
-    if field.names:
-        return field.names[number]
-    return bool(number) if field.bits == 1 else number * field.scale

@@ -31,10 +31,15 @@ def _entry(byte: int) -> int:
 _TABLE = bytes(_entry(byte) for byte in range(256))
 
 
-@lru_cache(maxsize=64)  # each node that receives a frame asks
 def check_of(id: int, data: bytes) -> int:
     """Return the check of a message: over its identifier, low byte first, and the bytes before the check."""
     crc = _TABLE[_TABLE[START ^ (id & 0xFF)] ^ (id >> 8)]
     for byte in data:
         crc = _TABLE[crc ^ byte]
     return crc ^ FINAL
+
+
+@lru_cache(maxsize=64)  # each node that receives a frame asks
+def is_sound(id: int, data: bytes) -> bool:
+    """Return whether a message ends with its check."""
+    return check_of(id, data[:-1]) == data[-1]
