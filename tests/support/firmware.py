@@ -101,8 +101,17 @@ ARDUROVER_SKID = replace(
 """Steers by the difference of its tracks, so that it turns on the spot."""
 
 ARDUSUB = Firmware("ArduSub", "MMRS_ARDUSUB", "sub", "vectored", {**LARGE_BATTERY, **CAMERA, **RELAYS})
-PX4 = Firmware("PX4", "MMRS_PX4", "copter", "sihsim_quadx", {"SIM_BAT_DRAIN": 3600})
-"""Its simulated battery is otherwise at half of its charge after a minute."""
+PX4 = Firmware(
+    "PX4",
+    "MMRS_PX4",
+    "copter",
+    "sihsim_quadx",
+    {"SIM_BAT_DRAIN": 3600, "MPC_LAND_CRWL": 0.6, "LNDMC_Z_VEL_MAX": 0.5},
+)
+"""Its simulated battery is otherwise at half of its charge after a minute. Its land detector otherwise wants
+a climb within 0.25 m/s, while that which it estimates wanders by 0.3 to 0.5 m/s on the ground; the limit is
+kept below MPC_LAND_CRWL.
+"""
 
 FIRMWARES = (ARDUCOPTER, ARDUROVER, ARDUSUB, PX4)
 

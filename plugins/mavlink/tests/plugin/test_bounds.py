@@ -277,9 +277,9 @@ def test_a_leg_of_a_px4_is_expected_to_take_what_was_measured(speed, metres, mea
 
 
 def test_a_px4_lands_as_long_as_was_measured_and_within_the_bounds_of_launch_and_landing():
-    """From 12 m, missions took 13.9 to 28.2 s for it, and 19.1 s in the mean.
+    """From 12 m, missions took 13.4 to 15.7 s for it, and 14.5 s in the mean; programs, 18.6 s in the mean.
 
-    Programs notice it up to 2 s later: these took 17.1 to 32.3 s, and 22.8 s in the mean.
+    With the default LNDMC_Z_VEL_MAX, they took up to 32.3 s.
     """
     robot = robot_program("alpha", [take_off("up", 12.0), LAND])
     given = checked(robot)
@@ -287,9 +287,9 @@ def test_a_px4_lands_as_long_as_was_measured_and_within_the_bounds_of_launch_and
     px4 = replace(kind, devices=quad(**{"mavlink.autopilot": "px4"}).devices)
     kinds = as_uploaded(given.robot_kinds)
     given = replace(given, types={kind.name: px4}, robot_kinds=kinds)
-    assert 19.1 <= kinematics_of(given, robot).landing(12.0) <= 22.8 - 2.0
+    assert 14.5 <= kinematics_of(given, robot).landing(12.0) <= 18.6 - 2.0
     landing = durations_of(given, robot, motions(given)["alpha"]).of[robot.stop - 1]
-    assert landing.moved.low <= 13.9
+    assert landing.moved.low <= 13.4
     assert landing.moved.high >= 32.3
 
 
