@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 SWEEPS = 24
+COLUMN_GAP, ROW_GAP = 70.0, 16.0
+"""Pixels between columns, and between the boxes of one."""
 CORRIDOR = 10.0
 """Height in pixels that an edge takes where it passes a column."""
 
@@ -53,13 +55,7 @@ class _Node:
     y: float = 0.0
 
 
-def layout(
-    boxes: Sequence[Box],
-    edges: Sequence[tuple[str, str]],
-    *,
-    column_gap: float = 70.0,
-    row_gap: float = 16.0,
-) -> Placed:
+def layout(boxes: Sequence[Box], edges: Sequence[tuple[str, str]]) -> Placed:
     """Return a layout in which edges lead to the right wherever the graph has no circle.
 
     Args:
@@ -73,8 +69,8 @@ def layout(
     nodes = [_Node(box.height, columns[index], box) for index, box in enumerate(boxes)]
     passed = _corridors(nodes, pairs, forward)
     ordered = _ordered(nodes)
-    _raise_and_lower(nodes, ordered, row_gap)
-    return _placed(nodes, ordered, passed, column_gap)
+    _raise_and_lower(nodes, ordered)
+    return _placed(nodes, ordered, passed)
 
 
 def _without_circles(count: int, pairs: Sequence[tuple[int, int]]) -> list[bool]:
@@ -156,10 +152,10 @@ def _mean(values: Mapping[int, float], of: Sequence[int], otherwise: float) -> f
     return sum(values[index] for index in of) / len(of) if of else otherwise
 
 
-def _raise_and_lower(nodes: Sequence[_Node], columns: Sequence[Sequence[int]], gap: float) -> None:
+def _raise_and_lower(nodes: Sequence[_Node], columns: Sequence[Sequence[int]]) -> None:
     """Give every node a height near its neighbours', in the order of its column, without overlap."""
     for column in columns:
-        _stack(nodes, column, gap, dict.fromkeys(column, 0.0))
+        _stack(nodes, column, dict.fromkeys(column, 0.0))
     for sweep in range(SWEEPS * 2):
         forward = sweep % 2 == 0
         for column in columns if forward else reversed(columns):
@@ -169,10 +165,10 @@ def _raise_and_lower(nodes: Sequence[_Node], columns: Sequence[Sequence[int]], g
                 middles = {other: nodes[other].y + nodes[other].height / 2 for other in near}
                 own = nodes[index].y + nodes[index].height / 2
                 wish[index] = _mean(middles, near, own) - nodes[index].height / 2
-            _stack(nodes, column, gap, wish)
+            _stack(nodes, column, wish)
 
 
-def _stack(nodes: Sequence[_Node], column: Sequence[int], gap: float, wish: Mapping[int, float]) -> None:
+def _stack(nodes: Sequence[_Node], column: Sequence[int], wish: Mapping[int, float]) -> None:
     """Place a column's nodes as near to their wishes as order and gaps allow.
 
     Nodes that would overlap move together, to the mean of their wishes (isotonic regression by
@@ -180,7 +176,7 @@ def _stack(nodes: Sequence[_Node], column: Sequence[int], gap: float, wish: Mapp
     """
     blocks: list[tuple[float, list[int], float]] = []
     for index in column:
-        height = nodes[index].height + gap
+        height = nodes[index].height + ROW_GAP
         blocks.append((wish[index], [index], height))
         while len(blocks) > 1 and blocks[-2][0] + blocks[-2][2] > blocks[-1][0]:
             top, upper, upper_height = blocks[-2]
@@ -192,21 +188,18 @@ def _stack(nodes: Sequence[_Node], column: Sequence[int], gap: float, wish: Mapp
         y = top
         for index in members:
             nodes[index].y = y
-            y += nodes[index].height + gap
+            y += nodes[index].height + ROW_GAP
 
 
 def _placed(
-    nodes: Sequence[_Node],
-    columns: Sequence[Sequence[int]],
-    passed: Mapping[int, Sequence[int]],
-    column_gap: float,
+    nodes: Sequence[_Node], columns: Sequence[Sequence[int]], passed: Mapping[int, Sequence[int]]
 ) -> Placed:
     top = min((node.y for node in nodes), default=0.0)
     lefts, x = [], 0.0
     widths = [max((_width(nodes[index]) for index in column), default=0.0) for column in columns]
     for width in widths:
         lefts.append(x)
-        x += width + column_gap
+        x += width + COLUMN_GAP
     corners = {node.box.name: (lefts[node.column], node.y - top) for node in nodes if node.box is not None}
     ways = {
         edge: tuple(
@@ -220,7 +213,7 @@ def _placed(
         node.box.name: lefts[node.column] + widths[node.column] for node in nodes if node.box is not None
     }
     bottom = max((node.y + node.height for node in nodes), default=0.0)
-    return Placed(corners, rights, ways, max(x - column_gap, 0.0), bottom - top)
+    return Placed(corners, rights, ways, max(x - COLUMN_GAP, 0.0), bottom - top)
 
 
 def _width(node: _Node) -> float:

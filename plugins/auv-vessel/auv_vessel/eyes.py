@@ -117,9 +117,9 @@ def _number(found: Mapping[str, object], key: str, low: float, high: float) -> f
 class Detections:
     """Receives the detections of cameras, and returns positions of objects.
 
-    One detection alone moves nothing: an object counts as seen when `least` of its latest detections, each
-    at least as confident as asked, lie within `spread` of their median. Every sender at the port can
-    tell anything, so that it is opened on this computer only unless a host is given.
+    One detection alone moves nothing: an object counts as seen when `LEAST` of its latest detections, each
+    with a `CONFIDENCE` at least, lie within `SPREAD` of their median. Every sender at the port can tell
+    anything, so that it is opened on this computer only.
 
     Attributes:
         port: that is listened to.
@@ -129,12 +129,8 @@ class Detections:
     def __init__(
         self,
         port: int = 0,
-        host: str = "127.0.0.1",
         *,
-        confidence: float = CONFIDENCE,
         lasting: float = LASTING,
-        least: int = LEAST,
-        spread: float = SPREAD,
         clock: Callable[[], float] = time.monotonic,
         robot: str = "",
     ) -> None:
@@ -142,21 +138,18 @@ class Detections:
 
         Args:
             robot: whose cameras count, and those that do not say whose they are; empty: all.
-            confidence: less counts for nothing.
             lasting: seconds after its arrival, by the clock, that a detection counts.
-            least: number of them that must agree. spread: metres from their median within which they do.
 
         Raises:
             OSError: the port is taken.
         """
         self.bad: Counter[str] = Counter()
-        self._confidence, self._lasting, self._least, self._spread = confidence, lasting, least, spread
-        self._clock, self._owner = clock, owner_of(robot)
+        self._lasting, self._clock, self._owner = lasting, clock, owner_of(robot)
         self._lock = threading.Lock()
         self._kept: dict[str, deque[tuple[float, Detection]]] = {}
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
-            self._socket.bind((host, port))
+            self._socket.bind(("127.0.0.1", port))
         except OSError:
             self._socket.close()
             raise
@@ -184,14 +177,14 @@ class Detections:
         """Return where an object is seen: metres north, east and below the surface; None: it is not."""
         found = self._lately(name)
         for _ in range(len(found)):
-            if len(found) < self._least:
+            if len(found) < LEAST:
                 return None
             middle = (
                 median(each.north for each in found),
                 median(each.east for each in found),
                 median(each.depth for each in found),
             )
-            agreeing = [each for each in found if _away(each, middle) <= self._spread]
+            agreeing = [each for each in found if _away(each, middle) <= SPREAD]
             if len(agreeing) == len(found):
                 return middle
             found = agreeing
@@ -223,7 +216,7 @@ class Detections:
         if self._owner and detection.robot not in ("", self._owner):
             self._refuse("of another robot")
             return
-        if detection.confidence < self._confidence:
+        if detection.confidence < CONFIDENCE:
             return
         now = self._clock()
         with self._lock:

@@ -9,8 +9,8 @@ from auv_vessel.eyes import Detection
 from auv_vessel.sheet import Sheet
 from auv_vision.cameras import Pose, cameras_of
 from auv_vision.detecting import Sought, detect, detections_of, sought_in
-from auv_vision.renderer import Conditions, Renderer
-from auv_vision.water import POOL, Water, hazier
+from auv_vision.renderer import Renderer
+from auv_vision.water import POOL, hazier
 
 
 class Eyes:
@@ -27,14 +27,12 @@ class Eyes:
         seed: int = 0,
         *,
         sought: Sequence[Sought] | None = None,
-        conditions: Conditions | None = None,
-        water: Water = POOL,
     ) -> None:
         """Look out for what is sought; None: for all that is there."""
         self._cameras, self._robot = cameras_of(sheet), sheet.robot
-        self._renderer = Renderer(surroundings, seed, conditions, water)
+        self._renderer = Renderer(surroundings, seed)
         self.sought = sought_in(surroundings) if sought is None else tuple(sought)
-        self._water = hazier(water, surroundings.haze)
+        self._water = hazier(POOL, surroundings.haze)
 
     def look(self, time: float, pose: Pose, believed: Pose | None = None) -> list[Detection]:
         """Return what both cameras see, by the clock of the vehicle, seconds.

@@ -73,9 +73,9 @@ class Message:
     comment: str = ""
 
 
-def _signed(name: str, bits: int, scale: float, unit: str, comment: str = "") -> Field:
+def _signed(name: str, bits: int, scale: float, unit: str) -> Field:
     most = (2 ** (bits - 1) - 1) * scale
-    return Field(name, bits, True, scale, unit, -most, most, comment=comment)
+    return Field(name, bits, True, scale, unit, -most, most)
 
 
 def _unsigned(name: str, bits: int, scale: float, unit: str, comment: str = "") -> Field:

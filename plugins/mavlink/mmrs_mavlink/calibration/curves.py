@@ -87,9 +87,9 @@ def ramp_seconds(change: float, acceleration: float, jerk: float) -> float:
     return change / acceleration + acceleration / jerk
 
 
-def smoothed(times: Floats, values: Floats, seconds: float = SMOOTHED) -> Floats:
+def smoothed(times: Floats, values: Floats) -> Floats:
     """Return the mean of the values around each of them."""
-    count = max(1, round(seconds / float(np.median(np.diff(times)))) // 2 * 2 + 1)
+    count = max(1, round(SMOOTHED / float(np.median(np.diff(times)))) // 2 * 2 + 1)
     padded = np.pad(values, count // 2, mode="edge")
     means: Floats = np.convolve(padded, np.ones(count) / count, "valid")
     return means

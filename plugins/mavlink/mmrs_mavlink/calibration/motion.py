@@ -177,15 +177,14 @@ def turns_of(flight: Flight) -> Iterator[float]:
         yield abs(float((headings[end] - headings[begin]) / (times[end] - times[begin])))
 
 
-def climbs_of(flight: Flight, chosen: Flags, sign: float, seconds: float = 1.0) -> Iterator[Plateau]:
-    """Yield where the vehicle climbs upright at even speed, or descends.
+def climbs_of(flight: Flight, chosen: Flags, sign: float) -> Iterator[Plateau]:
+    """Yield where the vehicle climbs upright at even speed, or descends, for a second at least.
 
     Args:
         chosen: samples that count.
         sign: 1 for climbs, -1 for descents.
-        seconds: for which the speed is kept at least.
     """
-    yield from plateaus_in(flight.times, vertical_speeds(flight, chosen, sign), _CLIMBING, seconds)
+    yield from plateaus_in(flight.times, vertical_speeds(flight, chosen, sign), _CLIMBING, 1.0)
 
 
 def vertical_speeds(flight: Flight, chosen: Flags, sign: float) -> Floats:
