@@ -64,8 +64,8 @@ class Bearing:
         distance: how far away, metres.
     """
 
-    base: str
-    distance: float
+    base: str = "home"
+    distance: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ class Ring:
     height: str
     clockwise: str
     duration: str
-    points: int
+    points: int = 12
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,12 +121,8 @@ def _structure(top: Table) -> Structure:
 
 
 def _document(name: str, table: Table) -> KnownDocument:
-    found = KnownDocument(
-        table.take("is", str, "") or name,
-        table.take("under", str, ""),
-        table.texts("keys"),
-        table.take("models", bool, False),
-    )
+    plain = table.plain(KnownDocument, name="is", holds="models")
+    found = KnownDocument(**{**plain, "name": plain["name"] or name})
     if not found.under and not found.keys:
         raise table.fault("needs 'under' or 'keys', which such a file is recognised by")
     table.done()

@@ -139,11 +139,8 @@ def _rule(source: str, table: Table, classes: Classes) -> Rule:
         source=source,
         to=metaclass.key if metaclass is not None else None,
         robot_type=metaclass is not None and metaclass.is_kind(*ROBOT_TYPE),
-        drop=table.take("drop", str, ""),
-        unreferred=table.take("unreferred", str, ""),
-        merge=table.take("merge", bool, False),
+        **table.plain(Rule, "source", "robot_type"),
         set=read_constants(table.table("set"), metaclass, classes),
-        changed=table.take("changed", str, ""),
         uses=_uses(table, metaclass, classes),
         wait=_wait(table.table("wait")) if "wait" in table else None,
         ring=_ring(table.table("ring")) if "ring" in table else None,
@@ -172,12 +169,7 @@ def _uses(rule: Table, metaclass: Metaclass | None, classes: Classes) -> Mapping
 
 def _wait(table: Table) -> Wait:
     at = table.table("at")
-    found = Wait(
-        table.take("slot", str, ""),
-        {feature: at.texts(feature) for feature in at.keys},
-        table.take("among", str, ""),
-        table.take("add", str, ""),
-    )
+    found = Wait(at={feature: at.texts(feature) for feature in at.keys}, **table.plain(Wait))
     table.done()
     return found
 
@@ -191,13 +183,11 @@ def _device(table: Table, metaclass: Metaclass | None, classes: Classes) -> Devi
 
 
 def _ring(table: Table) -> Ring:
-    names = ("radius", "height", "clockwise", "duration")
-    radius, height, clockwise, duration = (table.take(name, str, "") for name in names)
-    points = table.take("points", int, 12)
-    if points < 3:
+    found = Ring(**table.plain(Ring))
+    if found.points < 3:
         raise table.fault("points: needs at least 3")
     table.done()
-    return Ring(radius, height, clockwise, duration, points)
+    return found
 
 
 def _with_inherited(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import MISSING, fields
 from itertools import islice
 from typing import Any, TypeVar, cast
 
@@ -66,6 +67,25 @@ class Table:
             raise self.fault(f"{key}: expected a text or a list of texts, not {_called(value)}")
         return tuple(items)
 
+    def plain(self, kind: type, *but: str, **keys: str) -> dict[str, Any]:
+        """Return by name the fields of a dataclass that are texts, numbers, truth values or lists of texts.
+
+        Args:
+            kind: the dataclass; a key that is missing stands for the field's default, or an empty value.
+            but: fields that come from elsewhere.
+            keys: of fields that are called otherwise in the file.
+        """
+        found: dict[str, Any] = {}
+        for each in fields(kind):
+            key = keys.get(each.name, each.name)
+            if each.name in but or each.type not in _PLAIN:
+                continue
+            if (plain := _PLAIN[each.type]) is tuple:
+                found[each.name] = self.texts(key)
+            else:
+                found[each.name] = self.take(key, plain, plain() if each.default is MISSING else each.default)
+        return found
+
     def table(self, key: str) -> Table:
         """Return a table within it; an empty one where the key is missing."""
         return Table(f"{self.where}: {key}", self.take(key, object, {}))
@@ -93,6 +113,14 @@ class Table:
         return UnreadableError(f"{self.where}: {message}")
 
 
+_PLAIN: Mapping[object, type] = {
+    "str": str,
+    "float": float,
+    "bool": bool,
+    "int": int,
+    "tuple[str, ...]": tuple,
+}
+"""Types as annotations name them."""
 _NAMES: Mapping[type, str] = {str: "a text", float: "a number", bool: "true or false", int: "a whole number"}
 
 

@@ -23,24 +23,10 @@ def read_use(table: Table, metaclass: Metaclass | None, classes: Classes) -> Use
         UnreadableError: if a key is misspelt or ill-typed, or a path leads nowhere.
     """
     use = Use(
-        drop=table.take("drop", str, ""),
-        times=table.take("times", float, 1.0),
+        **table.plain(Use, rule="as", beside="with"),
         values=table.table("values").text_by_key(),
         absent=_absent(table),
         make=_make(table.table("make"), classes) if "make" in table else None,
-        first_of=table.take("first_of", str, ""),
-        void=table.texts("void"),
-        changed=table.take("changed", str, ""),
-        rule=table.take("as", str, ""),
-        beside=table.take("with", str, ""),
-        given=table.take("given", str, ""),
-        below=table.take("below", str, ""),
-        distinct=table.take("distinct", bool, False),
-        widen=table.take("widen", float, 0.0),
-        hoist=table.take("hoist", str, ""),
-        unique=table.take("unique", bool, False),
-        robot_type=table.take("robot_type", bool, False),
-        otherwise=table.take("otherwise", str, ""),
         counterpart=_counterpart(table.table("counterpart")) if "counterpart" in table else None,
         bearing=_bearing(table.table("bearing")) if "bearing" in table else None,
     )
@@ -136,15 +122,13 @@ def _also(table: Table, metaclass: Metaclass | None, classes: Classes, hoisted: 
 
 
 def _counterpart(table: Table) -> Counterpart:
-    found = Counterpart(
-        table.take("of", str, ""), table.take("within", str, ""), table.take("make", bool, False)
-    )
+    found = Counterpart(**table.plain(Counterpart))
     table.done()
     return found
 
 
 def _bearing(table: Table) -> Bearing:
-    found = Bearing(table.take("base", str, "home"), table.take("distance", float, 0.0))
+    found = Bearing(**table.plain(Bearing))
     if found.base not in ("self", "home") or found.distance <= 0:
         raise table.fault("needs base = 'self' or 'home', and a distance above 0 in metres")
     table.done()
