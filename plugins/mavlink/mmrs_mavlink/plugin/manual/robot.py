@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
+from math import inf
 
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
@@ -14,14 +15,17 @@ from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, StickAutopilot
 from mmrs_mavlink.plugin.manual.goals import carry_out, goal_of
-from mmrs_mavlink.plugin.manual.keeping import keeper_of
 from mmrs_mavlink.plugin.manual.route import Route, Ways
 from mmrs_mavlink.plugin.manual.steering import StickSteering
 from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_mavlink.profiles import ARDUSUB
 from mmrs_runtime import faults
-from mmrs_runtime.controllers.box_entries import PROCESS
+from mmrs_runtime.controllers.box_entries import FIX_SECONDS, PROCESS, fix
+from mmrs_runtime.controllers.state import State, status_of
+from mmrs_runtime.controllers.vocabulary import Local
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.steps import log_name
 from mmrs_runtime.vehicle import Vehicle
 
 UNANSWERED = 60.0
@@ -58,7 +62,11 @@ class ManualRobot(Vehicle):
         self._autopilot = StickAutopilot(link, self._ended.is_set, reserve, under_way=resumed)
         self._policies = (*context.robot.policies, *given.policies)
         self._troubles = Troubles(self._autopilot, self._policies)
-        self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint
+        self._box: BlackBox | None = None
+        if live.folder is not None:
+            path = black_box_path(live.folder / log_name(given.robot.id))
+            self._box = BlackBox(path, live.run, given.robot.id, live.clock.now, say=live.say)
+        self._fixed, self._plan = -inf, given.program.fingerprint
         self._thread: threading.Thread | None = None
         self._own: Fault | None = None
         self._ready = self._released = self._lost = self._bears = False
@@ -241,24 +249,12 @@ class ManualRobot(Vehicle):
         """Return what the vehicle has told last."""
         if not self._ready:
             return {}
-        steering = self._steering
-        place = {
-            "north": round(steering.north, 2),
-            "east": round(steering.east, 2),
-            "height": -round(steering.depth, 2),
-        }
-        return {
-            "mode": self._autopilot.word(),
-            "armed": self._autopilot.armed,
-            "place": place,
-            "heading": round(steering.heading, 2),
-            "speed": round(steering.speed, 3),
-            "energy": self._autopilot.charge(),
-        }
+        return status_of(self._told(self._live.clock.now()))
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box."""
-        self._keeper.note(kind, content)
+        if self._box is not None:
+            self._box.write(kind, **content)
 
     def close(self) -> None:
         """Release the sticks, disarm unless the vehicle is under external control, and fall silent."""
@@ -266,7 +262,8 @@ class ManualRobot(Vehicle):
         if self._thread is not None:
             self._thread.join(10.0)
         self._link.close()
-        self._keeper.close()
+        if self._box is not None:
+            self._box.close()
 
     def _drive(self) -> None:
         try:
@@ -292,7 +289,9 @@ class ManualRobot(Vehicle):
             self._steer(now, self._troubles.event)
             self._see_progress(now)
             changed = before != (self._troubles.event, self._steering.reached)
-            self._keeper.seen(self.state(now))
+            if self._box is not None and now - self._fixed >= FIX_SECONDS:
+                self._fixed = now
+                fix(self._box, self._told(now))
         if changed:
             self._live.wake()
 
@@ -382,6 +381,14 @@ class ManualRobot(Vehicle):
         self._route.come_up(now)
         self._instead = instead
         self._lost = self._autopilot.rising = True
+
+    def _told(self, now: float) -> State:
+        """Return what the vehicle tells, as black boxes and people have it: places count from its home."""
+        steering, (east, north, _) = self._steering, self._ways.home
+        place = Local(steering.north - north, steering.east - east, -steering.depth)
+        speed, heading, charge = steering.speed, steering.heading, self._autopilot.charge()
+        armed = self._autopilot.armed
+        return State(now, place, speed, heading, charge, self._autopilot.word(), armed=armed)
 
     def _here(self) -> Position:
         return (self._steering.east, self._steering.north, self._context.zero - self._steering.depth)
