@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.sorties import Pilot, waited
-from mmrs_core.planning.timeline import Timeline, timelines_of
+from mmrs_core.planning.timeline import Timeline, Timelines
 from mmrs_core.scene import (
     Await,
     Branch,
@@ -27,45 +27,54 @@ from mmrs_core.scene.timing import noticing
 _SAME = 1e-6
 
 
-def most_used(plan: Plan, pilots: Mapping[str, Pilot]) -> dict[str, float]:
-    """Return the seconds that each robot runs on one charge at most, also if charging ends at once.
+class Charges:
+    """Asks of plans of the same robots what their charges suffice for."""
 
-    Args:
-        plan: of all robots.
-        pilots: by name of robot.
-    """
-    found = _of_all(plan, pilots)
-    return {name: max((used for used, _ in uses), default=0.0) for name, uses in found.items()}
+    def __init__(self, pilots: Mapping[str, Pilot]) -> None:
+        """Make it.
 
+        Args:
+            pilots: by name of robot.
+        """
+        self._pilots = pilots
+        robots = {name: pilot.robot for name, pilot in pilots.items()}
+        self._timing = Timelines(robots, hasty=True, longest=self._longest)
 
-def short_of_charge(plan: Plan, pilots: Mapping[str, Pilot]) -> set[str]:
-    """Return the robots whose charge does not suffice for a sortie and for a diversion from where it ends."""
-    found = _of_all(plan, pilots)
-    return {
-        name
-        for name, uses in found.items()
-        if any(used + more > pilots[name].charge + _SAME for used, more in uses)
-    }
+    def most_used(self, plan: Plan) -> dict[str, float]:
+        """Return the seconds that each robot runs on one charge at most, also if charging ends at once."""
+        found = self._of(plan, self._pilots)
+        return {name: max((used for used, _ in uses), default=0.0) for name, uses in found.items()}
 
+    def short(self, plan: Plan, names: Collection[str] | None = None) -> set[str]:
+        """Return the robots whose charge does not suffice for a sortie and a diversion from where it ends.
 
-def _of_all(plan: Plan, pilots: Mapping[str, Pilot]) -> dict[str, list[tuple[float, float]]]:
-    """Return, by robot and sortie, the seconds used and those that a diversion from its end takes longer."""
+        Args:
+            plan: of all robots.
+            names: of those that are looked at; None: all.
+        """
+        return {
+            name
+            for name, uses in self._of(plan, self._pilots if names is None else names).items()
+            if any(used + more > self._pilots[name].charge + _SAME for used, more in uses)
+        }
 
-    def longest(robot: str, step: Step) -> float:
-        return paced((step.stroke,), pilots[robot], 1)[0][1] if isinstance(step, Serve) else 0.0
+    def _longest(self, robot: str, step: Step) -> float:
+        return paced((step.stroke,), self._pilots[robot], 1)[0][1] if isinstance(step, Serve) else 0.0
 
-    robots = {name: pilot.robot for name, pilot in pilots.items()}
-    timelines = timelines_of(plan, robots, hasty=True, longest=longest)
-    given = {
-        step.signal: timelines[each.robot].moments[i + 1][1]
-        for each in plan.robots
-        for i, step in enumerate(each.steps)
-        if isinstance(step, Signal)
-    }
-    return {
-        each.robot: list(_uses(each, pilots[each.robot], timelines[each.robot], given))
-        for each in plan.robots
-    }
+    def _of(self, plan: Plan, names: Collection[str]) -> dict[str, list[tuple[float, float]]]:
+        """Return, by robot and sortie, the seconds used and what a diversion from its end takes longer."""
+        timelines = self._timing.of(plan)
+        given = {
+            step.signal: timelines[each.robot].moments[i + 1][1]
+            for each in plan.robots
+            for i, step in enumerate(each.steps)
+            if isinstance(step, Signal)
+        }
+        return {
+            each.robot: list(_uses(each, self._pilots[each.robot], timelines[each.robot], given))
+            for each in plan.robots
+            if each.robot in names
+        }
 
 
 def _uses(

@@ -12,7 +12,7 @@ from graphlib import TopologicalSorter
 from itertools import pairwise
 from math import dist, inf
 
-from mmrs_core.planning.charges import most_used
+from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.corridors import gone_through
 from mmrs_core.planning.critical_path import Link, critical_path
 from mmrs_core.planning.jobs import Job, jobs_of
@@ -314,7 +314,7 @@ class _Explaining:
     def _charge(self) -> str:
         """Return which sortie is nearest to its limit, in words; empty where there is no limit."""
         pilots = Team(self._whole_scene).pilots if self._scene.stations else self._team.pilots
-        most = most_used(self._whole, pilots)
+        most = Charges(pilots).most_used(self._whole)
         used = [
             (most[each.robot] / allowed, each.robot)
             for each in self._whole.robots

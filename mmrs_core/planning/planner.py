@@ -109,6 +109,8 @@ def _signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | No
     }
     shortest = sorted(plans.items(), key=itemgetter(0))[:_MOST_SIGNALLED]
     for (_, (team, each)), cut in product(shortest, (False, True)):
+        if found is not None and found.makespan <= _DEAR * each.makespan:
+            continue
         told = signalled(team, each, inf if found is None else found.makespan, cut=cut)
         found = found if told is None else _better(told, found)
     return found

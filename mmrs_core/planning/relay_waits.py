@@ -9,7 +9,7 @@ from math import ceil, dist, floor
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.bounds import least_makespan
-from mmrs_core.planning.charges import most_used, short_of_charge
+from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.delaying import retimed
 from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
@@ -233,7 +233,8 @@ class Joining:
         Raises:
             InfeasibleError: gives by how much, and what would help.
         """
-        short, used = short_of_charge(made, team.pilots), most_used(made, team.pilots)
+        charges = Charges(team.pilots)
+        short, used = charges.short(made), charges.most_used(made)
         reasons = []
         for name in sorted(short):
             pilot = team.pilots[name]

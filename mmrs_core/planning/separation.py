@@ -10,14 +10,15 @@ from math import dist, inf, nan
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.charges import short_of_charge
+from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.delaying import delayed
 from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.search import broken_times
+from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.sweep import Flags, Floats, Indices
 from mmrs_core.planning.team import Team
-from mmrs_core.planning.timeline import HomeRelation, Timeline, timelines_of
+from mmrs_core.planning.timeline import HomeRelation, Timeline, Timelines
 from mmrs_core.planning.waiting import DelayedStep, Span, waits_before
 from mmrs_core.scene import (
     Await,
@@ -109,9 +110,9 @@ def separated(team: Team, plan: Plan) -> Plan:
     least = distance_to_keep(team.scene)
     if least is None:
         return plan
-    made = _separated(team, Traffic(team.scene, plan, least))
+    made = _separated(team, Traffic(team.scene, plan, least, pilots=team.pilots))
     if recharges(made) and Traffic(team.scene, made, least, hasty=True).conflicts:
-        made = _separated(team, Traffic(team.scene, plan, least, hasty=True))
+        made = _separated(team, Traffic(team.scene, plan, least, hasty=True, pilots=team.pilots))
     return made
 
 
@@ -181,7 +182,7 @@ def allowed(team: Team, before: Traffic, plan: Plan) -> Traffic | None:
     if broken_times(team, spans):
         return None
     other = before.with_plan(plan)
-    return None if other.overdrawn(team, before.plan) else other
+    return None if other.overdrawn(before.plan) else other
 
 
 class Traffic:
@@ -193,12 +194,32 @@ class Traffic:
         conflicts: the earliest of each two robots, by their names.
     """
 
-    def __init__(self, scene: Scene, plan: Plan, least: float, *, hasty: bool = False) -> None:
-        self.plan, self.least, self._hasty = plan, least, hasty
+    def __init__(
+        self,
+        scene: Scene,
+        plan: Plan,
+        least: float,
+        *,
+        hasty: bool = False,
+        pilots: Mapping[str, Pilot] | None = None,
+    ) -> None:
+        """Make it.
+
+        Args:
+            scene: of the plan.
+            plan: of all robots.
+            least: metres that they have to keep apart.
+            hasty: whether charging may end before its declared time.
+            pilots: by name of robot, whose charges must suffice; None: they are not looked at.
+        """
+        self.plan, self.least = plan, least
+        self._charges = None if pilots is None else Charges(pilots)
         self._robots = {robot.name: robot for robot in scene.robots}
+        self._timing = Timelines(self._robots, hasty=hasty)
         self._names = tuple(each.robot for each in plan.robots)
         self._timelines: Mapping[str, Timeline] = {}
         self._pieces: Mapping[str, Pieces] = {}
+        self._meetings: Mapping[tuple[str, str], tuple[Indices, Indices]] = {}
         self.conflicts: Mapping[tuple[str, str], Conflict] = {}
         self._update(frozenset(self._names))
 
@@ -212,7 +233,7 @@ class Traffic:
 
     def _update(self, changed: frozenset[str]) -> None:
         """Find where those who have changed come too near to others."""
-        self._timelines = timelines_of(self.plan, self._robots, hasty=self._hasty)
+        self._timelines = self._timing.of(self.plan)
         fresh = {
             name: pieces_of(self._timelines[name].rides, number)
             for number, name in enumerate(self._names)
@@ -222,8 +243,11 @@ class Traffic:
         proximity = self._proximity([self._pieces[name] for name in self._names])
         moved = np.array([name in changed for name in self._names])[proximity.pieces.owners]
         i, j = self._unordered(proximity.pieces, *proximity.meetings(_SPARE, moved))
-        kept = {pair: each for pair, each in self.conflicts.items() if changed.isdisjoint(pair)}
-        self.conflicts = {**kept, **dict(self._conflicts(proximity, i, j))}
+        found = {names: (meeting, conflict) for names, meeting, conflict in self._met(proximity, i, j)}
+        kept = {pair: each for pair, each in self._meetings.items() if changed.isdisjoint(pair)}
+        self._meetings = {**kept, **{names: meeting for names, (meeting, _) in found.items()}}
+        conflicts = {names: conflict for names, (_, conflict) in found.items()}
+        self.conflicts = {**{pair: self.conflicts[pair] for pair in kept}, **conflicts}
 
     def _proximity(self, parts: Sequence[Pieces]) -> Proximity:
         return Proximity(joined(parts), [self._robots[name].home for name in self._names], self.least)
@@ -246,21 +270,22 @@ class Traffic:
         chosen = np.array(left, dtype=np.bool_)
         return i[chosen], j[chosen]
 
-    def _conflicts(
+    def _met(
         self, proximity: Proximity, i: Indices, j: Indices
-    ) -> Iterator[tuple[tuple[str, str], Conflict]]:
-        """Yield the earliest conflict of each two robots."""
+    ) -> Iterator[tuple[tuple[str, str], tuple[Indices, Indices], Conflict]]:
+        """Yield, for each two robots that meet, the pieces on which they do and the earliest conflict."""
         times, owners = np.maximum(proximity.soonest(i, j), 0.0), proximity.pieces.owners
+        begins, at_home = np.searchsorted(owners, np.arange(len(self._names))), proximity.at_home(i, j)
         pairs = owners[i] * len(self._names) + owners[j]
         order = np.argsort(times, kind="stable")
-        first = order[np.unique(pairs[order], return_index=True)[1]]
-        i, j = i[first], j[first]
-        begins = np.searchsorted(owners, np.arange(len(self._names)))
-        own = ((each - begins[owners[each]]).tolist() for each in (i, j))
-        figures = (times[first].tolist(), proximity.at_home(i, j).tolist(), zip(*own, strict=True))
-        for one, two, *rest in zip(*(owners[each].tolist() for each in (i, j)), *figures, strict=True):
-            names = self._names[one], self._names[two]
-            yield names, Conflict(*names, *rest)
+        order = order[np.argsort(pairs[order], kind="stable")]
+        cuts = np.nonzero(np.diff(pairs[order], prepend=-1))[0]
+        for chosen in np.split(order, cuts)[1:]:
+            first = chosen[0]
+            one, two = int(owners[i[first]]), int(owners[j[first]])
+            meeting = i[chosen] - begins[one], j[chosen] - begins[two]
+            names, pieces = (self._names[one], self._names[two]), (int(meeting[0][0]), int(meeting[1][0]))
+            yield names, meeting, Conflict(*names, float(times[first]), bool(at_home[first]), pieces)
 
     def earliest(self) -> Conflict:
         """Return the earliest conflict."""
@@ -282,13 +307,11 @@ class Traffic:
         """Return what a robot does."""
         return next(each.steps for each in self.plan.robots if each.robot == name)
 
-    def overdrawn(self, team: Team, before: Plan) -> list[str]:
+    def overdrawn(self, before: Plan) -> set[str]:
         """Return the robots that wait longer than before and then take more than a charge allows."""
         old = {each.robot: each.steps for each in before.robots}
-        short = short_of_charge(self.plan, team.pilots)
-        return [
-            each.robot for each in self.plan.robots if each.steps != old[each.robot] and each.robot in short
-        ]
+        changed = {each.robot for each in self.plan.robots if each.steps != old[each.robot]}
+        return set() if self._charges is None else self._charges.short(self.plan, changed)
 
     def later_starts(self) -> dict[str, float]:
         """Return when robots must leave home at the earliest to keep apart; empty if that does not help.
@@ -341,12 +364,14 @@ class Traffic:
 
         All are indices of steps; the end is that with whose begin the one's step is over.
         """
-        numbers = self._names.index(one), self._names.index(other)
-        proximity = self._proximity([self._pieces[name] for name in (one, other)])
-        pieces = proximity.pieces
-        i, j = self._unordered(pieces, *proximity.meetings(_SPARE))
-        i, j = np.where(pieces.owners[i] == numbers[0], (i, j), (j, i))
-        found = (pieces.steps[j], pieces.steps[i], pieces.over[i])
+        mine, others = self._pieces[one], self._pieces[other]
+        if (one, other) in self._meetings:
+            i, j = self._meetings[one, other]
+        elif (other, one) in self._meetings:
+            j, i = self._meetings[other, one]
+        else:
+            return []
+        found = others.steps[j], mine.steps[i], mine.over[i]
         return list(zip(*(each.tolist() for each in found), strict=True))
 
     def knows(self, name: str, step: int) -> Mapping[str, int]:

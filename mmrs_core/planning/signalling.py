@@ -8,8 +8,10 @@ by the clock, where that costs less.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Generator, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from heapq import heappop, heappush
 from itertools import accumulate, pairwise
 from math import dist, inf
 from typing import TypeAlias
@@ -22,6 +24,9 @@ from mmrs_core.planning.travel import kinematics_of
 from mmrs_core.scene import Await, Plan, Position, Robot, Scene, Signal, Step, Transit
 
 Corner: TypeAlias = tuple[Position, Position, Position]
+
+_Offers: TypeAlias = Generator[tuple[Plan, float], bool | None, None]
+"""Yields plans, each with the step that is cut in it, and is sent whether they keep times and charges."""
 
 _STEPS = 8_000
 """Steps of plans that are looked at, at most: one plan for each wait, at least one wait for each conflict."""
@@ -48,7 +53,8 @@ def signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
         cut: whether robots may wait on long legs too, before the ends of these.
     """
     least, hasty = distance_to_keep(team.scene) or 0.0, recharges(plan)
-    traffic = Traffic(team.scene, _by_moves(team.scene, plan), least, hasty=hasty)
+    parts = _by_moves(team.scene, plan)
+    traffic = Traffic(team.scene, parts, least, hasty=hasty, pilots=team.pilots)
     left = _STEPS
     while left > 0:
         if not traffic.conflicts:
@@ -57,52 +63,78 @@ def signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
         steps = sum(len(each.steps) for each in traffic.plan.robots)
         if steps * len(traffic.conflicts) > left:
             break
-        options = [each for each in _options(team, traffic, cut=cut) if each.plan.makespan < most]
-        if not options:
+        further = _further(team, traffic, most, cut=cut)
+        if further is None:
             break
         left -= steps
-        traffic = min(options, key=_cost)
+        traffic = further
     return None
 
 
-def _cost(traffic: Traffic) -> tuple[float, float, float]:
+def _cost(plan: Plan) -> tuple[float, float, float]:
     """Return (makespan, seconds until each robot is back, seconds away from home); less is better."""
-    makespan, backs, _ = traffic.cost
-    return makespan, backs, round(sum(each.busy for each in traffic.plan.robots), 3)
+    backs = sum(each.steps[-1].end for each in plan.robots if each.steps)
+    return round(plan.makespan, 3), round(backs, 3), round(sum(each.busy for each in plan.robots), 3)
 
 
-def _options(team: Team, traffic: Traffic, *, cut: bool) -> Iterator[Traffic]:
-    """Yield what becomes of the traffic if one of the two robots that meet first lets the other go first."""
+def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic | None:
+    """Return what becomes of the traffic if one of the two robots that meet first lets the other go first.
+
+    What costs least is tried first, and taken if it keeps times and charges and the two come further; None
+    if nothing does.
+    """
     conflict = traffic.earliest()
-    for early, late in ((conflict.first, conflict.second), (conflict.second, conflict.first)):
-        met = traffic.met(early, late)
-        place = min(step for step, _, _ in met)
-        before = _progress(traffic, early, late)
-        for at_home in (False, True):
-            waits = traffic.waits(late, at_home=at_home, last=place)
-            if waits is not None:
-                other = allowed(team, traffic, delayed(team.scene, traffic.plan, late, waits))
-                if other is not None and _progress(other, early, late) > before:
-                    yield other
-        yield from _signalling(team, traffic, early, late, cut=cut)
+    pairs = (conflict.first, conflict.second), (conflict.second, conflict.first)
+    before = {pair: _progress(traffic, *pair) for pair in pairs}
+    offers = [(pair, each) for pair in pairs for each in _offers(team.scene, traffic, *pair, cut=cut)]
+    waiting: list[tuple[tuple[float, float, float], int, Plan, float]] = []
+
+    def ask(number: int, *, may: bool | None) -> None:
+        """Put the next plan that a source offers, if it is soon enough, where it is to be tried."""
+        with suppress(StopIteration):
+            plan, halved = offers[number][1].send(may)
+            while plan.makespan >= most:
+                plan, halved = offers[number][1].send(False)
+            heappush(waiting, (_cost(plan), number, plan, halved))
+
+    for number in range(len(offers)):
+        ask(number, may=None)
+    while waiting:
+        _, number, plan, halved = heappop(waiting)
+        pair, other = offers[number][0], allowed(team, traffic, plan)
+        if other is not None and _progress(other, *pair, halved) > before[pair]:
+            return other
+        ask(number, may=other is not None)
+    return None
 
 
-def _signalling(team: Team, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[Traffic]:
-    """Yield the traffic if one robot waits for the other, as near as it can and as briefly as helps."""
-    met, before = traffic.met(early, late), _progress(traffic, early, late)
-    told = traffic.steps(early)
+def _offers(scene: Scene, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[_Offers]:
+    """Yield the ways in which one robot may wait for another: by the clock, and for signals."""
+    met = traffic.met(early, late)
+    place = min(step for step, _, _ in met)
+    for at_home in (False, True):
+        waits = traffic.waits(late, at_home=at_home, last=place)
+        if waits is not None:
+            yield _single(delayed(scene, traffic.plan, late, waits))
+    yield _signalling(scene, traffic, early, late, cut=cut)
+
+
+def _single(plan: Plan) -> _Offers:
+    yield plan, inf
+
+
+def _signalling(scene: Scene, traffic: Traffic, early: str, late: str, *, cut: bool) -> _Offers:
+    """Yield plans in which one robot waits for the other, as near as it can and as briefly as may help."""
+    met, told = traffic.met(early, late), traffic.steps(early)
     last, over = min(step for step, _, _ in met), min(over for _, _, over in met)
     ends = [each for each in range(over, len(told) + 1) if not isinstance(told[each - 1], Await | Signal)]
-    for plan, place, halved in _waiting_places(team.scene, traffic, late, last, cut=cut):
+    for plan, place, halved in _waiting_places(scene, traffic, late, last, cut=cut):
         for end in ends[:_ENDS]:
             if traffic.knows(early, end).get(late, -1) >= place:
                 break
-            other = allowed(team, traffic, _signalled_before(team.scene, plan, (early, end), (late, place)))
-            if other is None:
+            may = yield _signalled_before(scene, plan, (early, end), (late, place)), halved
+            if not may:
                 break
-            if _progress(other, early, late, halved) > before:
-                yield other
-                return
 
 
 def _waiting_places(

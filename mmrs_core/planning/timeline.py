@@ -9,8 +9,8 @@ until after the last.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from itertools import pairwise
 from math import dist, hypot, inf
@@ -38,6 +38,17 @@ from mmrs_core.scene.timing import Rates, acting, noticing
 
 _Given: TypeAlias = tuple[float, float, Mapping[str, int]]
 """Seconds at which a signal is given at the earliest, and at the latest, and what is then known."""
+
+_State: TypeAlias = tuple[Position, float, bool, bool, bool]
+"""How a robot is: see the attributes of `_Walk` from `here` on."""
+
+_Passages: TypeAlias = "dict[tuple[_State, tuple[Hashable, ...]], _Passage]"
+
+_Part: TypeAlias = "tuple[Sequence[Ride], float, float, int]"
+"""Rides, seconds by which they begin later and end later than they say, and the index of their step."""
+
+_Place: TypeAlias = "tuple[Position, float, float, float, HomeRelation]"
+"""Where a robot stands: place, earliest and latest time, radius."""
 
 
 class HomeRelation(IntEnum):
@@ -80,16 +91,42 @@ class Timeline:
     """Where one robot may be, and what it waits for.
 
     Attributes:
-        rides: in order; whatever it does last, it then stays where it is.
-        stops: where it stands when each step begins, and after the last one.
+        parts: rides, each with what it is later by than they say, see `rides`.
+        places: where it stands when each step begins, and after the last one, see `stops`.
         known: for each step, by other robot: the step that this one has begun at least by then.
         moments: seconds at which each step begins, and the last one ends, at the earliest and at the latest.
     """
 
-    rides: tuple[Ride, ...]
-    stops: tuple[Ride, ...]
+    parts: tuple[_Part, ...]
+    places: tuple[_Place, ...]
     known: tuple[Mapping[str, int], ...]
     moments: tuple[tuple[float, float], ...]
+
+    @property
+    def rides(self) -> tuple[Ride, ...]:
+        """Return the rides in order; whatever the robot does last, it then stays where it is."""
+        return tuple(
+            Ride(
+                each.points,
+                each.early + early,
+                each.late + late,
+                each.least,
+                each.radius,
+                each.relation,
+                each.step + step,
+                each.over + step,
+            )
+            for rides, early, late, step in self.parts
+            for each in rides
+        )
+
+    @property
+    def stops(self) -> tuple[Ride, ...]:
+        """Return where the robot stands when each step begins, and after the last one."""
+        return tuple(
+            Ride((here,), early, late, (), radius, relation, step, step + 1)
+            for step, (here, early, late, radius, relation) in enumerate(self.places)
+        )
 
 
 def timelines_of(
@@ -99,28 +136,89 @@ def timelines_of(
     hasty: bool = False,
     longest: Callable[[str, Step], float] = lambda robot, step: 0.0,
 ) -> dict[str, Timeline]:
-    """Return the timeline of every robot, all arms of choices included; robots without steps stay at home.
+    """Return the timeline of every robot, as `Timelines` does of one plan after the other."""
+    return Timelines(robots, hasty=hasty, longest=longest).of(plan)
 
-    Args:
-        plan: of all robots.
-        robots: by name.
-        hasty: whether charging may end before its declared time.
-        longest: returns the seconds that a robot's step takes at most, if that may be more than by its legs.
+
+class Timelines:
+    """Makes the timelines of plans in which the same robots do much the same, at other times.
+
+    How a robot goes through a step is the same whenever it begins it: so that is found once.
     """
-    walks = {
-        each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot]), hasty, longest)
-        for each in plan.robots
-    }
-    left = {each.robot: list(each.steps) for each in plan.robots}
-    given: dict[str, _Given] = {}
-    while any(left.values()):
-        before = sum(map(len, left.values()))
-        for name, steps in left.items():
-            while steps and walks[name].may_begin(steps[0], given):
-                walks[name].begin(steps.pop(0), given)
-        if sum(map(len, left.values())) == before:
-            raise InternalError("robots of a plan wait for each other")
-    return {name: walk.ended() for name, walk in walks.items()}
+
+    def __init__(
+        self,
+        robots: Mapping[str, Robot],
+        *,
+        hasty: bool = False,
+        longest: Callable[[str, Step], float] = lambda robot, step: 0.0,
+    ) -> None:
+        """Make it.
+
+        Args:
+            robots: by name.
+            hasty: whether charging may end before its declared time.
+            longest: returns the seconds that a robot's step takes at most, if that may be more than by its
+                legs.
+        """
+        self._robots, self._hasty, self._longest = robots, hasty, longest
+        self._passages: dict[str, _Passages] = {name: {} for name in robots}
+
+    def of(self, plan: Plan) -> dict[str, Timeline]:
+        """Return the timeline of every robot of a plan, all arms of choices included.
+
+        Robots without steps stay at home.
+
+        Raises:
+            InternalError: robots wait for each other.
+        """
+        walks = {each.robot: self._walk(each.robot) for each in plan.robots}
+        left = {each.robot: list(reversed(each.steps)) for each in plan.robots}
+        given: dict[str, _Given] = {}
+        while any(left.values()):
+            before = sum(map(len, left.values()))
+            for name, steps in left.items():
+                while steps and walks[name].may_begin(steps[-1], given):
+                    walks[name].begin(steps.pop(), given)
+            if sum(map(len, left.values())) == before:
+                raise InternalError("robots of a plan wait for each other")
+        return {name: walk.ended() for name, walk in walks.items()}
+
+    def _walk(self, name: str) -> _Walk:
+        robot = self._robots[name]
+        return _Walk(robot, kinematics_of(robot), self._hasty, self._longest, self._passages[name])
+
+
+@dataclass(frozen=True, slots=True)
+class _Passage:
+    """How a robot goes through a step, whenever it begins it.
+
+    Attributes:
+        step: that it goes through, kept so that its key stays its own.
+        rides: seconds and indices count from the begin of the step.
+        early, late: seconds that it takes at least, and at most.
+        after: how the robot is then.
+    """
+
+    step: Step
+    rides: tuple[Ride, ...]
+    early: float
+    late: float
+    after: _State
+
+
+def _key(step: Step) -> tuple[Hashable, ...]:
+    """Return what a step has in common with itself at another time; to be asked of steps that are kept."""
+    seconds = round(step.end - step.begin, 6)
+    match step:
+        case Transit():
+            return Transit, step.route, step.speed
+        case Serve():
+            return Serve, id(step.stroke), step.speed, seconds
+        case Launch() | Recover():
+            return type(step), step.at, step.up, seconds
+        case _:
+            return type(step), seconds
 
 
 @dataclass(slots=True)
@@ -128,65 +226,93 @@ class _Walk:
     """One robot in its steps, as early and as late as it may be.
 
     Attributes:
-        hasty, longest: see `timelines_of`.
+        hasty, longest: see `Timelines`. passages: of steps that were gone through before.
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet. off: whether its motors are, as at home.
-        stops, known, moments: see `Timeline`.
         merges: whether it comes from the arms of a choice, and must stop before it gives a signal.
+        parts, places, known, moments: see `Timeline`.
     """
 
     robot: Robot
     kinematics: Kinematics
     hasty: bool
     longest: Callable[[str, Step], float]
-    rides: list[Ride] = field(default_factory=list)
+    passages: _Passages
     now: float = 0.0
     by: float = 0.0
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
     gone: bool = False
     off: bool = True
-    stops: list[Ride] = field(default_factory=list)
-    moments: list[tuple[float, float]] = field(default_factory=list)
     merges: bool = False
+    parts: list[_Part] = field(default_factory=list)
+    places: list[_Place] = field(default_factory=list)
+    moments: list[tuple[float, float]] = field(default_factory=list)
     known: list[Mapping[str, int]] = field(default_factory=lambda: [{}])
 
     def __post_init__(self) -> None:
         self.here, self.by = self.robot.home, noticing(self.kinematics.timing)
 
+    @property
+    def state(self) -> _State:
+        return self.here, self.radius, self.gone, self.off, self.merges
+
+    @state.setter
+    def state(self, state: _State) -> None:
+        self.here, self.radius, self.gone, self.off, self.merges = state
+
     def may_begin(self, step: Step, given: Mapping[str, _Given]) -> bool:
         return not isinstance(step, Await) or all(signal in given for signal in step.signals)
 
     def begin(self, step: Step, given: dict[str, _Given]) -> None:
-        self.stops.append(self._standing(len(self.stops)))
-        self.moments.append((self.now, self.by))
+        self._arrive()
         self.add(step, given)
         self._learn(step.signals if isinstance(step, Await) else (), given)
 
-    def ended(self) -> Timeline:
-        self.stops.append(self._standing(len(self.stops)))
+    def _arrive(self) -> None:
+        self.places.append((self.here, self._since(), self.by, self.radius, self._relation()))
         self.moments.append((self.now, self.by))
+
+    def ended(self) -> Timeline:
+        self._arrive()
         self.by = inf
         self._stay(0.0)
-        return Timeline(tuple(self.rides), tuple(self.stops), tuple(self.known), tuple(self.moments))
+        return Timeline(tuple(self.parts), tuple(self.places), tuple(self.known), tuple(self.moments))
 
     def add(self, step: Step, given: dict[str, _Given]) -> None:
-        latest = self.by + self.longest(self.robot.name, step)
-        self._add(step, given)
-        self.by = max(self.by, latest)
-
-    def _add(self, step: Step, given: dict[str, _Given]) -> None:
         if isinstance(step, Await):
             self._await(step, given)
         elif isinstance(step, Signal):
             if self.merges:
                 self._pause()
-            place = len(self.stops) - 1
+            place = self._place()
             given[step.signal] = (self.now, self.by, {**self.known[place], self.robot.name: place})
         elif isinstance(step, Branch):
             self._branch(step, given)
-        elif isinstance(step, Serve):
+        else:
+            self._pass(step)
+
+    def _pass(self, step: Step) -> None:
+        """Go through a step that takes as long whenever it begins."""
+        key = self.state, _key(step)
+        passage = self.passages.get(key)
+        if passage is None:
+            passage = self.passages[key] = self._passage(step)
+        self.parts.append((passage.rides, self.now, self.by, self._place()))
+        self.now, self.by, self.state = self.now + passage.early, self.by + passage.late, passage.after
+
+    def _passage(self, step: Step) -> _Passage:
+        """Return how the robot, as it is, goes through a step."""
+        walk = replace(self, parts=[], places=[], moments=[], now=0.0)
+        walk.by, walk.state = 0.0, self.state
+        walk._arrive()
+        walk._go_through(step)
+        rides = tuple(ride for each in walk.parts for ride in each[0])
+        return _Passage(step, rides, walk.now, max(walk.by, self.longest(self.robot.name, step)), walk.state)
+
+    def _go_through(self, step: Step) -> None:
+        if isinstance(step, Serve):
             self._serve(step)
         elif isinstance(step, Transit):
             self._transit(step)
@@ -296,7 +422,7 @@ class _Walk:
                 since = max(begin, early - BACK_SECONDS) if len(legs) == 1 else begin
                 until = self.by + BACK_SECONDS
                 place = self._place()
-                self.rides.append(Ride(beyond, since, until, (0.0,), self.radius, step=place, over=over))
+                self._add(Ride(beyond, since, until, (0.0,), self.radius, step=place, over=over))
 
     def _ride(
         self,
@@ -313,7 +439,7 @@ class _Walk:
         least = tuple(share * each for each in even)
         self.by += longest
         place = self._place()
-        self.rides.append(Ride(points, self.now, self.by, least, self.radius, relation, place, place + 1))
+        self._add(Ride(points, self.now, self.by, least, self.radius, relation, place, place + 1))
         self.now, self.here, self.gone = self.now + seconds, points[-1], True
 
     def _pause(self) -> None:
@@ -324,16 +450,22 @@ class _Walk:
         """Stay for so long at least, and at most."""
         self.by += seconds if longest is None else longest
         if self.by > self.now:
-            self.rides.append(self._standing(self._place()))
+            place, relation = self._place(), self._relation()
+            self._add(Ride((self.here,), self._since(), self.by, (), self.radius, relation, place, place + 1))
         self.now += seconds
 
-    def _standing(self, place: int) -> Ride:
-        relation = HomeRelation.HOME if dist(self.here, self.robot.home) <= NEAR else HomeRelation.ELSEWHERE
-        early = self.now if self.gone else -inf
-        return Ride((self.here,), early, self.by, (), self.radius, relation, place, place + 1)
+    def _add(self, ride: Ride) -> None:
+        self.parts.append(((ride,), 0.0, 0.0, 0))
+
+    def _since(self) -> float:
+        """Return since when it may stand where it is."""
+        return self.now if self.gone else -inf
+
+    def _relation(self) -> HomeRelation:
+        return HomeRelation.HOME if dist(self.here, self.robot.home) <= NEAR else HomeRelation.ELSEWHERE
 
     def _place(self) -> int:
-        return len(self.stops) - 1
+        return len(self.places) - 1
 
 
 def moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:

@@ -13,7 +13,7 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.checks import Status
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.diagnostics import Severity
-from mmrs_core.planning.charges import most_used
+from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Serve, Signal, Step, all_steps
@@ -73,7 +73,7 @@ def test_nothing_stands_against_the_behaviour(example):
 
 def test_the_planner_counts_charges_as_the_check_does(example):
     pilots = Team(example.scene).pilots
-    used = most_used(example.plan, pilots)
+    used = Charges(pilots).most_used(example.plan)
     for verdict in example.verdicts:
         if verdict.property == "endurance" and verdict.margin is not None:
             kinematics = pilots[verdict.robot].kinematics
