@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain, product
+from itertools import chain
 from math import floor, inf
 from operator import itemgetter
 from typing import Protocol
@@ -35,7 +35,7 @@ from mmrs_core.planning.separation import (
     stacked_altitudes,
     starting_later,
 )
-from mmrs_core.planning.signalling import signalled
+from mmrs_core.planning.signalling import DEAR, signalled
 from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.scene import Plan, Scene
 
@@ -108,10 +108,8 @@ def _signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | No
         round(each.makespan, 1): (team, each) for team, each in dear if team.scene.robots == scene.robots
     }
     shortest = sorted(plans.items(), key=itemgetter(0))[:_MOST_SIGNALLED]
-    for (_, (team, each)), cut in product(shortest, (False, True)):
-        if found is not None and found.makespan <= _DEAR * each.makespan:
-            continue
-        told = signalled(team, each, inf if found is None else found.makespan, cut=cut)
+    for _, (team, each) in shortest:
+        told = signalled(team, each, inf if found is None else found.makespan)
         found = found if told is None else _better(told, found)
     return found
 
@@ -183,9 +181,6 @@ _FEW_PAIRS = 100
 _MOST_SIGNALLED = 2
 """Plans, the shortest first, whose robots are then kept apart by signals."""
 
-_DEAR = 1.01
-"""Times the mission time without separation from which on it is worth to try other means than waiting."""
-
 
 def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | None) -> Plan:
     """Return a plan of a team, or of one like it where robots that come too near are kept apart for less.
@@ -205,7 +200,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
     try:
         found, made = _plan_of(team, jobs, search, best)
         best = _better(made, best)
-        if made.makespan <= _DEAR * found.makespan:
+        if made.makespan <= DEAR * found.makespan:
             return best
     except TooNearError as error:
         refusal = error
@@ -325,7 +320,7 @@ def _kept_apart(
         if later is None:
             raise error from None
         return later
-    if waiting.makespan <= _DEAR * found.makespan:
+    if waiting.makespan <= DEAR * found.makespan:
         return waiting
     search.dear.append((team, found))
     least = _better(waiting, best)

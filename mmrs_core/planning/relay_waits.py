@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, dist, floor
+from math import ceil, dist, floor, inf
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.bounds import least_makespan
@@ -18,6 +19,7 @@ from mmrs_core.planning.reach import Reach, reach_of, unsure
 from mmrs_core.planning.remedies import lifetime_of
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import TooNearError, separated
+from mmrs_core.planning.signalling import signalled
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.team import Team
@@ -47,9 +49,6 @@ _INSIDE = 1.0
 
 _CLOSE = 0.1
 """Metres within which it is found where a robot is back in range."""
-
-_MOST_LATE = 4
-"""Times that relays are made to wait for one more robot to be home, before they wait for all."""
 
 _STAYS = "stay"
 """Rule of the move with which a stay ends."""
@@ -97,44 +96,32 @@ class Joining:
     def _kept_apart(self, team: Team, whole: Plan, needs: Mapping[str, _Need]) -> Plan:
         """Return the plan with all waits, in which robots keep apart.
 
-        The relays leave in time, and go home as soon as they may. Where one of them would come too near to a
-        robot that is still to go home, it waits for that one to be home. Where that does not help, relays
-        leave first of all, and wait for all to be home.
+        The relays leave in time, and go home as soon as they may; of robots that would come too near, one
+        waits by the clock or for a signal of the other. Where that does not help, relays leave first of all,
+        and wait for all to be home.
         """
-        late = frozenset[str]()
-        for _ in range(_MOST_LATE):
-            try:
-                return separated(team, retimed(self._scene, whole, self._steps(team, needs, late)))
-            except TooNearError as error:
-                more = self._served_by_each_other(error.robots, needs) - late
-                if not more:
-                    break
-                late |= more
-        steps = self._steps(team, needs, frozenset(needs), first=True)
-        return separated(team, retimed(self._scene, whole, steps))
-
-    def _served_by_each_other(self, robots: frozenset[str], needs: Mapping[str, _Need]) -> frozenset[str]:
-        """Return which of some robots need others of them as relays."""
-        return frozenset(
-            name
-            for name in robots & needs.keys()
-            if any(stay.robot.name in robots for stay in needs[name].relays)
-        )
+        soonest = retimed(self._scene, whole, self._steps(team, needs, in_turns=False))
+        apart: Plan | None = None
+        with suppress(TooNearError):
+            apart = separated(team, soonest)
+        told = signalled(team, soonest, inf if apart is None else apart.makespan)
+        found = apart if told is None else told
+        return found or separated(team, retimed(self._scene, whole, self._steps(team, needs, in_turns=True)))
 
     def _steps(
-        self, team: Team, needs: Mapping[str, _Need], late: frozenset[str], *, first: bool = False
+        self, team: Team, needs: Mapping[str, _Need], *, in_turns: bool
     ) -> dict[str, tuple[Step, ...]]:
         """Return what robots do, with their waits.
 
         Args:
             team: of all.
             needs: by robot.
-            late: robots that let the relays go at their end only, not when they are back in range.
-            first: whether relays leave first of all, and not in time only.
+            in_turns: whether relays leave first of all, and not in time only, and stay until the others are
+                home, not only back in range.
         """
         steps = {
             each.robot: self._waiting(
-                team.pilots[each.robot], each.steps, needs.get(each.robot), each.robot not in late
+                team.pilots[each.robot], each.steps, needs.get(each.robot), at_once=not in_turns
             )
             for each in self._robots
         }
@@ -142,7 +129,9 @@ class Joining:
         for stay in reversed(self._placed):
             name = stay.robot.name
             users = [user for user, need in needs.items() if stay in need.relays]
-            start = 0.0 if first else self._start(stay, min((needed[user] for user in users), default=0.0))
+            start = 0.0
+            if not in_turns:
+                start = self._start(stay, min((needed[user] for user in users), default=0.0))
             if name in needed:
                 needed[name] += start
             idle = Await(0.0, start, stay.task, (), start)
@@ -193,7 +182,7 @@ class Joining:
         return _Need(tuple(relays), (launches or [outside[0]])[-1], last)
 
     def _waiting(
-        self, pilot: Pilot, steps: tuple[Step, ...], need: _Need | None, at_once: bool
+        self, pilot: Pilot, steps: tuple[Step, ...], need: _Need | None, *, at_once: bool
     ) -> tuple[Step, ...]:
         """Return the steps of a robot that waits for the relays that it needs, and tells them to go."""
         if need is None:

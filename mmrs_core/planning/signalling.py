@@ -28,6 +28,9 @@ Corner: TypeAlias = tuple[Position, Position, Position]
 _Offers: TypeAlias = Generator[tuple[Plan, float], bool | None, None]
 """Yields plans, each with the step that is cut in it, and is sent whether they keep times and charges."""
 
+DEAR = 1.01
+"""Times the mission time without separation from which on it is worth to try other means than waiting."""
+
 _STEPS = 8_000
 """Steps of plans that are looked at, at most: one plan for each wait, at least one wait for each conflict."""
 
@@ -41,17 +44,26 @@ _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
 
 
-def signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
+def signalled(team: Team, plan: Plan, most: float = inf) -> Plan | None:
     """Return the plan in which robots wait for signals so that all keep apart; None if none is found.
 
-    Of the two robots that come too near first, that one waits with which the mission ends sooner.
+    Of the two robots that come too near first, that one waits with which the mission ends sooner: before
+    legs of its path, or on long legs too, before the ends of these.
 
     Args:
         team: of the scene, with a minimum separation.
         plan: of the team.
         most: seconds that the plan must take less than.
-        cut: whether robots may wait on long legs too, before the ends of these.
     """
+    best: Plan | None = None
+    for cut in (False, True):
+        if most > DEAR * plan.makespan:
+            found = _signalled(team, plan, most, cut=cut)
+            best, most = (best, most) if found is None else (found, found.makespan)
+    return best
+
+
+def _signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
     least, hasty = distance_to_keep(team.scene) or 0.0, recharges(plan)
     parts = _by_moves(team.scene, plan)
     traffic = Traffic(team.scene, parts, least, hasty=hasty, pilots=team.pilots)

@@ -6,12 +6,14 @@ from itertools import pairwise
 
 import pytest
 from plain_scenes import CRAWLER, DRONE, robot, scene, task, visit
+from plan_replay import complaints
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.explaining import explain
 from mmrs_core.planning.planner import plan
+from mmrs_core.planning.separation import distance_to_keep, first_conflict
 from mmrs_core.planning.timeline import timelines_of
-from mmrs_core.scene import Await, Launch, Part, Serve, Signal, Stroke, Transit, Work
+from mmrs_core.scene import Await, Launch, Part, Recover, Serve, Signal, Stroke, Transit, Work
 from mmrs_core.scene.relays import RELAY
 
 FAR = (500.0, 0.0, 30.0)
@@ -275,18 +277,29 @@ def test_a_chain_of_relays_leaves_in_time_for_what_is_beyond_it():
     assert found.begins["farther"] == pytest.approx(900.0)
 
 
-def test_a_relay_stays_until_that_robot_only_is_home_which_it_would_come_too_near_to():
-    """The path home of one leads along that of the relay, that of the other one does not."""
-    works = {
-        "behind": {"a": visit(FAR)},
-        "aside": {"b": visit((400.0, 250.0, 30.0))},
-        "ridge": {"c": staying(RIDGE)},
-    }
-    found = planned(works, minimum_separation=8.0)
-    home = {name: kinds(found, name).index("Recover") for name in "ab"}
-    told = {name: kinds(found, name).index("Signal") for name in "ab"}
-    assert told["a"] > home["a"]
-    assert told["b"] < home["b"]
+CROSSED = {
+    "behind": {"a": visit(FAR)},
+    "aside": {"b": visit((400.0, 250.0, 30.0))},
+    "ridge": {"c": staying(RIDGE)},
+}
+"""The path home of `a` leads along that of the relay, that of `b` does not."""
+
+
+def test_a_relay_goes_home_as_soon_as_another_robot_is_out_of_its_way_not_only_when_that_one_is_home():
+    whole = scene(TEAM, CROSSED, minimum_separation=8.0)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert first_conflict(whole, found, distance_to_keep(whole)) is None
+    home = min(step.end for name in "ab" for step in steps(found, name) if isinstance(step, Recover))
+    stay = next(step for step in reversed(steps(found, "c")) if isinstance(step, Serve))
+    assert stay.end < home
+    assert found.makespan < 1.05 * planned(CROSSED).makespan
+
+
+def test_robots_tell_a_relay_on_their_way_home_that_they_are_back_in_range():
+    found = planned(CROSSED, minimum_separation=8.0)
+    for name in "ab":
+        assert kinds(found, name).index("Signal") < kinds(found, name).index("Recover")
 
 
 def test_launches_come_after_waits_so_that_no_robot_hovers_for_a_relay():
