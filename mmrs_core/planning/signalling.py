@@ -3,7 +3,7 @@
 A wait by the clock must allow for how slow and how quick robots may be, and the more the later it is. A
 signal ends a wait as soon as the other robot is out of the way. Where two robots come too near, one of them
 waits before a move of its path until the other one begins a later move, as trains do on a single track; or
-by the clock, where that costs less.
+by the clock, where that costs less. So robots follow each other through corridors, and relays go home.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ LONGEST = {
     "Carbon dioxide near L'Aquila": 1477.0,
     "Course": 172.0,
     "Dam inspection": 3741.0,
-    "Hot spots behind a ridge": 706.0,
+    "Hot spots behind a ridge": 670.0,
     "Lost float": 205.0,
     "Objects in the pool": 396.0,
     "Outfall": 1210.0,
