@@ -9,7 +9,7 @@ until after the last.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from itertools import pairwise
@@ -42,7 +42,7 @@ _Given: TypeAlias = tuple[float, float, Mapping[str, int]]
 _State: TypeAlias = tuple[Position, float, bool, bool, bool]
 """How a robot is: see the attributes of `_Walk` from `here` on."""
 
-_Passages: TypeAlias = "dict[tuple[_State, tuple[Hashable, ...]], _Passage]"
+_Passages: TypeAlias = "dict[tuple[_State, tuple[object, ...]], _Passage]"
 
 _Part: TypeAlias = "tuple[Sequence[Ride], float, float, int]"
 """Rides, seconds by which they begin later and end later than they say, and the index of their step."""
@@ -207,7 +207,7 @@ class _Passage:
     after: _State
 
 
-def _key(step: Step) -> tuple[Hashable, ...]:
+def _key(step: Step) -> tuple[object, ...]:
     """Return what a step has in common with itself at another time; to be asked of steps that are kept."""
     seconds = round(step.end - step.begin, 6)
     match step:
