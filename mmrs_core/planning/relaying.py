@@ -4,7 +4,7 @@ Who is a relay is decided first, the rest is planned as if the relays had always
 robots are made to wait for each other. A relay leaves in time to be at its place when it is needed, and
 tells those that need it when it is there. One that needs it leaves home for a sortie out of its own range
 only then, and tells the relay when it is back in that range for the rest of the plan; when all have told
-it, the relay goes home, and waits only where another one is still in its way. A relay that needs another
+it, the relay goes home, and waits only where another one would come too near. A relay that needs another
 one to get to its own place is one of those that need that. No circle of waits comes about, since relays are
 put up one after the other.
 """

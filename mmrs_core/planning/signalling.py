@@ -121,7 +121,7 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic
 
 
 def _offers(scene: Scene, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[_Offers]:
-    """Yield the ways in which one robot may wait for another: by the clock, and for signals."""
+    """Yield how one robot may wait for another: by the clock, at home only or not, and for signals."""
     met = traffic.met(early, late)
     place = min(step for step, _, _ in met)
     for at_home in (False, True):
