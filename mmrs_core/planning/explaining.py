@@ -330,7 +330,7 @@ class _Explaining:
     def _corridors(self) -> str:
         """Return which robots come in and go out through which corridors, in words; empty: through none."""
         users = dict[tuple[str, str], list[str]]()
-        for each in self._plan.robots:
+        for each in self._whole.robots:
             through = gone_through(each.steps, self._scene.corridors)
             for direction, names in through.items():
                 for name in names:
@@ -343,9 +343,9 @@ class _Explaining:
 
     def _deadline(self) -> str:
         spare = [
-            (task.deadline - self._plan.ends[task.name], task.name)
-            for task in self._scene.tasks
-            if task.deadline is not None and task.name in self._plan.ends
+            (task.deadline - self._timed.ends[task.name], task.name)
+            for task in self._whole_scene.tasks
+            if task.deadline is not None and task.name in self._timed.ends
         ]
         return f"'{min(spare)[1]}' ends {min(spare)[0]:.0f} s before its deadline" if spare else ""
 

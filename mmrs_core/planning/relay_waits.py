@@ -16,8 +16,7 @@ from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.reach import Reach, reach_of, unsure
-from mmrs_core.planning.remedies import lifetime_of
-from mmrs_core.planning.search import broken_times
+from mmrs_core.planning.remedies import for_times, lifetime_of
 from mmrs_core.planning.separation import TooNearError, separated
 from mmrs_core.planning.signalling import signalled
 from mmrs_core.planning.sorties import Pilot
@@ -88,9 +87,8 @@ class Joining:
         made = self._kept_apart(team, whole, needs)
         self._refuse_short(team, made, needs)
         spans = {task: (begin, made.ends[task]) for task, begin in made.begins.items()}
-        if late := broken_times(team, spans):
-            reasons = [f"task '{task}' {words}" for task, words, _ in late]
-            raise InfeasibleError(f"no plan keeps all times: {reasons[0]}", reasons)
+        if late := [*for_times(team, (), spans)]:
+            raise InfeasibleError(f"no plan keeps all times: {late[0]}", late)
         return replace(made, lower_bound=self._least(team))
 
     def _kept_apart(self, team: Team, whole: Plan, needs: Mapping[str, _Need]) -> Plan:

@@ -117,12 +117,14 @@ def _lifetimes(
 
 def _passages(team: Team, task: str, why: str) -> Iterator[str]:
     """Yield the areas that are in the way of robots, each of which alone keeps them from a task."""
+    users = dict[str, list[str]]()
     for name in team.able(task):
         robot = team.scene.robot(name)
         blocking = [each for each in team.scene.kept_from(robot) if f"'{each.name}'" in why][:_MOST_AREAS]
         opened = [f"'{each.name}'" for each in blocking if _fits(team, task, robot, without=each)]
         if opened:
-            yield f"for '{name}' a passage through {' or '.join(opened)}"
+            users.setdefault(f"a passage through {' or '.join(opened)}", []).append(f"'{name}'")
+    yield from _for_each(users)
 
 
 def _corridors(team: Team, task: str, why: str) -> Iterator[str]:
@@ -136,6 +138,11 @@ def _corridors(team: Team, task: str, why: str) -> Iterator[str]:
             for words in islice(fit, 1):
                 alike = [name for name in team.able(task) if team.kinds[name] == team.kinds[kind]]
                 users.setdefault(words, []).extend(f"'{name}'" for name in alike)
+    yield from _for_each(users)
+
+
+def _for_each(users: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """Yield each remedy once, with the robots that it is for."""
     yield from (f"for {', '.join(names)} {words}" for words, names in users.items())
 
 
@@ -234,7 +241,13 @@ def _landing(team: Team, name: str, away: float) -> Area:
 
 
 def for_times(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:
-    """Yield each deadline and longest duration that the best schedule found breaks, and what would do."""
+    """Yield each deadline and longest duration that the best schedule found breaks, and what would do.
+
+    Args:
+        team: of the scene.
+        jobs: of which is told when each would end as the only task.
+        spans: by task: when it begins and ends.
+    """
     single = {job.name: replace(job, after=()) for job in jobs if job.choice is None}
     for name, words, _ in broken_times(team, spans):
         begin, end = spans[name]

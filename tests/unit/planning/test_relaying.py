@@ -13,7 +13,7 @@ from mmrs_core.planning.explaining import explain
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import distance_to_keep, first_conflict
 from mmrs_core.planning.timeline import timelines_of
-from mmrs_core.scene import Await, Launch, Part, Recover, Serve, Signal, Stroke, Transit, Work
+from mmrs_core.scene import Await, Corridor, Launch, Part, Recover, Serve, Signal, Stroke, Transit, Work
 from mmrs_core.scene.relays import RELAY
 
 FAR = (500.0, 0.0, 30.0)
@@ -209,6 +209,16 @@ def test_times_of_all_tasks_are_kept_or_refused():
         planned(works, tasks={"far": task("far", deadline=90.0)})
 
 
+@pytest.mark.parametrize("name", ["far", "ridge"])
+def test_a_deadline_that_would_do_is_named_where_robots_wait_for_relays(name):
+    works = {"far": visit(FAR), "ridge": {"c": staying(RIDGE)}}
+    with pytest.raises(InfeasibleError) as caught:
+        planned(works, tasks={name: task(name, deadline=90.0)})
+    (enough,) = re.findall(r"; a deadline of (\d+) s would do$", str(caught.value))
+    ends = planned(works, tasks={name: task(name, deadline=float(enough))}).ends[name]
+    assert ends == pytest.approx(float(enough), abs=1.0)
+
+
 def test_two_relays_want_two_robots():
     works = {"far": visit(FAR), "ridge": {"c": staying(RIDGE)}, "hill": {"c": staying(NEAR)}}
     with pytest.raises(InfeasibleError, match=r"2 tasks want a robot each .* and only 'c' can do them"):
@@ -244,6 +254,24 @@ def test_an_explanation_says_what_waiting_for_the_relay_costs():
     (charge,) = [each for each in found.limits if each.name == "charge"]
     assert charge.margin.startswith("'c' uses up to ")
     assert [each.task for each in found.tasks] == ["far"]
+
+
+def test_an_explanation_says_how_near_deadlines_are_after_waits_for_the_relay():
+    works = {"far": visit(FAR), "ridge": {"c": staying(RIDGE)}}
+    whole = scene(TEAM, works, tasks={"far": task("far", deadline=900.0)})
+    made = plan(whole)
+    (limit,) = [each for each in explain(whole, made).limits if each.name == "deadlines"]
+    assert limit.margin == f"'far' ends {900.0 - made.ends['far']:.0f} s before its deadline"
+
+
+def test_an_explanation_names_the_relay_among_those_that_use_corridors():
+    gate = Corridor("gate", ((120.0, 0.0), (180.0, 0.0)), 40.0)
+    works = {"far": visit(FAR), "ridge": {"c": staying(RIDGE)}}
+    whole = scene(TEAM, works, corridors=(gate,))
+    made = plan(whole)
+    user = next(name for name in "ab" if steps(made, name))
+    (limit,) = [each for each in explain(whole, made).limits if each.name == "corridors"]
+    assert f"'{user}', 'c' come in through 'gate'" in limit.margin
 
 
 def test_an_explanation_of_a_relay_with_nothing_else_to_do_names_no_waits():

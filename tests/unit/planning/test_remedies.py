@@ -170,18 +170,28 @@ def test_a_distance_between_robots_that_is_proposed_can_be_kept():
     refusal(replace(whole, minimum_separation=float(least) + 0.2))
 
 
+RING = [
+    box(name, west, south, east, north)
+    for name, west, south, east, north in (
+        ("north", -50, 30, 50, 40),
+        ("south", -50, -40, 50, -30),
+        ("west", -50, -40, -40, 40),
+        ("east", 40, -40, 50, 40),
+    )
+]
+
+
 def test_an_area_that_is_to_be_opened_is_one_that_bars_the_path():
-    ring = [
-        box(name, west, south, east, north)
-        for name, west, south, east, north in (
-            ("north", -50, 30, 50, 40),
-            ("south", -50, -40, 50, -30),
-            ("west", -50, -40, -40, 40),
-            ("east", 40, -40, 50, 40),
-        )
-    ]
-    whole = scene([robot(home=(200.0, 0.0, 0.0))], {"a": visit((0.0, 0.0, 20.0))}, areas=ring)
+    whole = scene([robot(home=(200.0, 0.0, 0.0))], {"a": visit((0.0, 0.0, 20.0))}, areas=RING)
     found = refusal(whole)
     assert found.startswith("task 'a' can be reached by no robot (r1: no path from")
-    assert plan(replace(whole, areas=tuple(ring[1:])))
+    assert plan(replace(whole, areas=tuple(RING[1:])))
     assert found.endswith("for 'r1' a passage through 'north' or 'south' or 'west' or 'east' would do")
+
+
+def test_an_area_that_bars_the_paths_of_several_robots_is_named_once():
+    team = [robot("r1", (200.0, 0.0, 0.0)), robot("r2", (220.0, 0.0, 0.0))]
+    found = refusal(scene(team, {"a": visit((0.0, 0.0, 20.0))}, areas=RING))
+    assert found.endswith(
+        "; for 'r1', 'r2' a passage through 'north' or 'south' or 'west' or 'east' would do"
+    )
