@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities import actions, behaviours, moves
+from mmrs_core.generation.capabilities import behaviours, moves
 from mmrs_core.generation.capabilities.probes import Probe, samples_of
 from mmrs_core.generation.environment import environment_of
 from mmrs_core.generation.render import Press
@@ -60,8 +60,8 @@ def probes(target: Target, contributions: Contributions) -> tuple[Probe, ...]:
             moves.of_plugins(samples, contributions),
             moves.of_headings(samples),
             moves.of_transitions(samples),
-            actions.of_devices(samples),
-            actions.of_actions(samples),
+            moves.of_devices(samples),
+            moves.of_actions(samples),
             behaviours.of_policies(samples),
         )
     )

@@ -20,8 +20,7 @@ from mmrs_core.generation.context import RobotContext, homeless, require_home
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.generation.plan_moves import context_of, seconds_of_hold, vehicleless
 from mmrs_core.generation.plan_refusals import Wording, of_movement, of_policies, of_policy
-from mmrs_imc.messages import REQUEST, SET, Message, Value
-from mmrs_imc.packing import packet
+from mmrs_imc.messages import REQUEST, SET, Message, Value, packet
 from mmrs_imc.plans import LONGEST, Plan, plan_of
 from mmrs_imc.wiring import set_by
 

@@ -10,8 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from imc_reader import FORMS, check_sum, read_packet, smallest
 from marine_programs import MANY_PROGRAMS, inputs, rendered
-from mmrs_imc.messages import DEFINITIONS, Message
-from mmrs_imc.packing import crc16, packet, payload
+from mmrs_imc.messages import DEFINITIONS, Message, crc16, packet, payload
 from mmrs_imc.target import IMC
 from mmrs_multicopter.testing import robot_program
 from pyproj import Geod

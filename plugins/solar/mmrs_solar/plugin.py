@@ -36,7 +36,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
     """Contribute the fixes of unambiguous figures."""
-    from mmrs_solar.fixes import FIXES
+    from mmrs_solar.constraints import FIXES
 
     return FIXES
 

@@ -100,7 +100,7 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
 @hookimpl
 def mmrs_vehicle_timings() -> Iterable[VehicleTiming]:
     """Contribute how long copters, rovers and underwater vehicles take with ArduPilot and PX4."""
-    from mmrs_mavlink.plugin.timings import timings
+    from mmrs_mavlink.plugin.vehicles import timings
 
     return timings()
 

@@ -1,14 +1,19 @@
-"""Which vehicle profile carries a robot."""
+"""Which vehicle profile carries a robot, and how long its vehicle takes, for plans and simulations."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import partial
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.hooks import Extensions
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
+from mmrs_core.contributions.timing import VehicleTiming
 from mmrs_core.scene import Name, RobotType
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUROVER, PROFILES, VehicleProfile
+from mmrs_mavlink.steps.energy import CHARGING_FACTOR
+from mmrs_runtime.timing import AutopilotTiming
 
 AUTOPILOT = "mavlink.autopilot"
 """The property of a device that names the autopilot."""
@@ -108,3 +113,18 @@ def autopilot_fault(type: RobotType | None, extensions: Extensions) -> str:
 
 def _autopilots(extensions: Extensions) -> tuple[str, ...]:
     return tuple(dict.fromkeys(each.autopilot.name for each in profiles_in(extensions)))
+
+
+def timings() -> Iterator[VehicleTiming]:
+    """Yield the timing of each class of vehicle."""
+    for vehicle in dict.fromkeys(word for each in PROFILES.values() for word in each.words):
+        yield VehicleTiming(vehicle, partial(_timing_of, vehicle))
+
+
+def _timing_of(vehicle: str, type: RobotType) -> AutopilotTiming:
+    """Return the timing with the autopilot that the type names, else with ArduPilot."""
+    named = autopilot_of(type, {})
+    fitting = [each for each in PROFILES.values() if vehicle in each.words]
+    profile = next((each for each in fitting if each.autopilot.name == named), fitting[0])
+    step = replace(profile.pacing.step, still=profile.still)
+    return replace(profile.pacing, step=step, charging=CHARGING_FACTOR)

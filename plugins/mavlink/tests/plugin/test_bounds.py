@@ -20,7 +20,7 @@ from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.scene import Capability, Kinematics
 from mmrs_core.scene.timing import Rates
 from mmrs_core.testing.programs import installed, move, program
-from mmrs_mavlink.plugin.timings import timings
+from mmrs_mavlink.plugin.vehicles import timings
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PROFILES, PX4_MULTICOPTER
 from mmrs_mavlink.sitl.body import STEP, Body, Vector
 from mmrs_mavlink.steps.energy import CHARGING_FACTOR
