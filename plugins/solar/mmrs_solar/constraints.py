@@ -10,23 +10,23 @@ from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_value
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import number
-from mmrs_solar.device_checks import undescribed, undone, unrecorded
-from mmrs_solar.figure_checks import (
+from mmrs_solar.names import IRRADIANCE, PANEL_GROUP, PANEL_LOOK_TASK, PANEL_TASK, THERMAL_ROW_TASK
+from mmrs_solar.panel_checks import (
     OVERLAPS,
     camera_unreadable,
     coarse,
     dim,
     hasty,
-)
-from mmrs_solar.group_checks import (
     name_shared,
     out_of_square,
     panel_outside,
     row_outside,
     rows_overlap,
     too_dark,
+    undescribed,
+    undone,
+    unrecorded,
 )
-from mmrs_solar.names import IRRADIANCE, PANEL_GROUP, PANEL_LOOK_TASK, PANEL_TASK, THERMAL_ROW_TASK
 
 CONTEXT = ("urn:mmrs:context:1.0", "Context")
 DEVICE = ("urn:mmrs:robot:1.0", "Device")

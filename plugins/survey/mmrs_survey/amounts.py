@@ -18,7 +18,7 @@ from mmrs_core.planning.limits import MOST
 from mmrs_core.scene import Position
 from mmrs_survey import names
 from mmrs_survey.camera import IMAGE_KEYS, Footprint
-from mmrs_survey.device_checks import devices_for
+from mmrs_survey.task_checks import devices_for
 
 MANY = 20_000
 """Photos that take a drone most of a day."""

@@ -10,23 +10,27 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.planning.limits import MOST
 from mmrs_survey import names
 from mmrs_survey.amounts import MANY, amount_over
-from mmrs_survey.device_checks import action_undone, camera_unreadable, device_unclear, parameter_unknown
-from mmrs_survey.grid_checks import (
+from mmrs_survey.place_checks import (
     OVERLAPS,
     footprint_twice,
     half_footprint,
+    nothing_reached,
     nothing_seen,
     overlap_unused,
+    partly_reached,
     resolution_coarse,
     resolution_unfounded,
     seen_twice,
 )
-from mmrs_survey.reach_checks import nothing_reached, partly_reached
 from mmrs_survey.task_checks import (
     IN_RANGES,
+    action_undone,
+    camera_unreadable,
+    device_unclear,
     looks_at_itself,
     nowhere_to_measure,
     object_anywhere,
+    parameter_unknown,
     relay_bound,
     twice_high,
     where_to_measure_twice,
