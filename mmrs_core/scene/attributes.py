@@ -6,6 +6,7 @@ Valid models hold what is asked for; where one does not, the task is refused, ne
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import isfinite
 from typing import TypeGuard
 
 from mmrs_core.errors import InfeasibleError
@@ -16,6 +17,15 @@ def number(part: Part, name: str) -> float | None:
     """Return a number; None where it is absent."""
     value = part.attributes.get(name)
     return float(value) if isinstance(value, (int, float)) else None
+
+
+def finite(text: str) -> float | None:
+    """Return the finite number that a text is, as of a device's property; None: it is none."""
+    try:
+        found = float(text)
+    except ValueError:
+        return None
+    return found if isfinite(found) else None
 
 
 def text(part: Part, name: str) -> str:

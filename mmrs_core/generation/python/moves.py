@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from mmrs_core.behaviour.earth import metres
@@ -21,6 +20,7 @@ from mmrs_core.contributions.rules import most_specific
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.escaping import Call
 from mmrs_core.scene import Name, Position
+from mmrs_core.scene.attributes import finite
 
 if TYPE_CHECKING:
     from mmrs_core.generation.python.driver import Movement, PythonDriver
@@ -102,7 +102,7 @@ def look_of(heading: Heading, context: RobotContext, more: tuple[tuple[str, obje
 
 def unturnable(heading: Heading, context: RobotContext) -> Iterator[str]:
     """Yield why a robot cannot turn as a heading says."""
-    if not _is_number(properties_of(heading, context).get("mount.yaw", "0")):
+    if finite(properties_of(heading, context).get("mount.yaw", "0")) is None:
         yield f"device '{heading.device}': mount.yaw is not a number"
 
 
@@ -111,8 +111,7 @@ def mount_of(heading: Heading, context: RobotContext) -> float:
 
     It is 0 where the property holds no number, which is refused.
     """
-    given = properties_of(heading, context).get("mount.yaw", "0")
-    return float(given) if _is_number(given) else 0.0
+    return finite(properties_of(heading, context).get("mount.yaw", "0")) or 0.0
 
 
 def properties_of(heading: Heading, context: RobotContext) -> Mapping[str, str]:
@@ -179,13 +178,6 @@ def _target(target: MoveTarget, context: RobotContext) -> Call:
             raise ValueError("a coordinate has no position")
         return place
     return Call("Object", (target.description, place, target.tolerance))
-
-
-def _is_number(text: str) -> bool:
-    try:
-        return isfinite(float(text))
-    except ValueError:
-        return False
 
 
 MOVEMENTS: Mapping[Name, Movement] = {

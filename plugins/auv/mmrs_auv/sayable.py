@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
 
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import layout_of, messages_of
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.scene import Position, RobotType
+from mmrs_core.scene.attributes import finite
 
 ROUNDING = 1e-3
 """Metres by which places may differ that are the same."""
@@ -77,8 +77,4 @@ def unturnable(device: str, type: RobotType | None) -> Iterator[str]:
 
 def _yaw(device: str, type: RobotType | None) -> float | None:
     known = type.devices.get(device) if type is not None else None
-    try:
-        found = float(known.properties.get("mount.yaw", "0")) if known is not None else 0.0
-    except ValueError:
-        return None
-    return found if isfinite(found) else None
+    return finite(known.properties.get("mount.yaw", "0")) if known is not None else 0.0

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
 
 from mmrs_core.analysis.verdicts import Margin, UnknownMove, for_each_robot, judged
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.scene.attributes import finite
 from mmrs_solar.names import IRRADIANCE
 
 NAME = "irradiance"
@@ -35,15 +35,7 @@ def _needs(robot: RobotProgram) -> Iterator[tuple[int, float | None]]:
         for action in (*move.before, *move.after):
             for key, value in action.parameters:
                 if key == IRRADIANCE:
-                    yield index, _figure(value)
-
-
-def _figure(value: str) -> float | None:
-    try:
-        figure = float(value)
-    except ValueError:
-        return None
-    return figure if isfinite(figure) else None
+                    yield index, finite(value)
 
 
 IRRADIANCE_CHECK = Check(

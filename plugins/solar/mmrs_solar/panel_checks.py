@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from math import atan2, cos, degrees, dist, isfinite, radians
+from math import atan2, cos, degrees, dist, radians
 
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
@@ -12,6 +12,7 @@ from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.planning.devices import figure
+from mmrs_core.scene.attributes import finite
 from mmrs_solar.camera import HIGHEST_KEY, LOWEST_KEY, OPTICS_KEYS, PITCH_KEYS, RECORDING_KEYS
 from mmrs_solar.names import IRRADIANCE, PANEL_GROUP, THERMAL_ROW_TASK
 
@@ -149,7 +150,7 @@ def hasty(task: Element, models: ModelSet) -> Iterator[Finding]:
 def camera_unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield times and angles of cameras that are none."""
     found = {text(each, "name"): each for each in children(device, "properties")}
-    figures = {key: _figure(text(each, "value")) for key, each in found.items()}
+    figures = {key: finite(text(each, "value")) for key, each in found.items()}
     named = text(device, "id")
     for key, each in found.items():
         figure = figures[key]
@@ -160,14 +161,6 @@ def camera_unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
     lowest, highest = figures.get(LOWEST_KEY), figures.get(HIGHEST_KEY)
     if lowest is not None and highest is not None and lowest > highest:
         yield Finding(device, f"{LOWEST_KEY} of device '{named}' is above its {HIGHEST_KEY}")
-
-
-def _figure(value: str) -> float | None:
-    try:
-        found = float(value)
-    except ValueError:
-        return None
-    return found if isfinite(found) else None
 
 
 def undone(task: Element, models: ModelSet) -> Iterator[Finding]:
