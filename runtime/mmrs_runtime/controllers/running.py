@@ -19,7 +19,7 @@ from ..engine.preflight import NotReadyError
 from ..engine.resuming import over_by, restore
 from ..engine.terms import Ending
 from ..faults import LINK_LOST, FaultError, reason_of
-from ..injection import Rehearsal
+from ..injection import Rehearsal, noted_in
 from ..orders.orders import Orders, stopping
 from ..policies import NOTHING
 from ..program import Move, Notify, Program, SlotId
@@ -96,7 +96,7 @@ def _connect(driver: Driver, options: Options, rehearsal: Rehearsal, robot: Robo
     """Return a robot's vehicle; one that cannot be reached leaves its black box, which says so."""
     path, mark = black_box_path(options.log / robot.log), {"dry_run": True} if options.dry else {}
     box = BlackBox(path, live.run, robot.id, options.clock.now, mark=mark, say=live.say)
-    rehearsal.record(robot.id, lambda fault, content: box.write("injected", fault=fault, **content))
+    rehearsal.record(robot.id, noted_in(box))
     try:
         return driver.connect(robot, live, box)
     except FaultError as fault:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .rehearsal import Note, Rehearsal
+from .rehearsal import Note, Rehearsal, noted_in
 from .spec import HELP, Injection, Injections, injections
 
-__all__ = ["HELP", "Injection", "Injections", "Note", "Rehearsal", "injections"]
+__all__ = ["HELP", "Injection", "Injections", "Note", "Rehearsal", "injections", "noted_in"]

@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 from ..bus.carriers.carrier import Carrier
 from ..clock import Clock
 from ..ports import Port
+from ..records.blackbox import BlackBox
 from .carrier import InjectedCarrier
 from .port import InjectedPort, Line
 from .process import Effect, effect_of
@@ -84,10 +85,13 @@ class Rehearsal:
                 note(fault.text, {"state": "asked for", "seed": self._injections.seed})
 
     def forget(self, robot: str) -> None:
-        """Record nothing more for a robot, and leave its vehicle alone."""
+        """Record nothing more for a robot, and leave its vehicle alone; all faults end with the last one."""
         with self._noting:
             self._notes.pop(robot, None)
             self._vehicles.pop(robot, None)
+            others = bool(self._notes)
+        if not others:
+            self.close()
 
     def wrap(self, port: Port, robots: Collection[str], line: type[Line] = Line) -> Port:
         """Return a port that these robots share, with the faults of their links, each way by a `line`."""
@@ -191,6 +195,16 @@ class Rehearsal:
         with self._noting:
             for note in [self._notes[robot] for robot in robots if robot in self._notes]:
                 note(text, content)
+
+
+def noted_in(box: BlackBox | None) -> Note:
+    """Return what records faults in a black box, where there is one."""
+
+    def note(text: str, content: Mapping[str, object]) -> None:
+        if box is not None:
+            box.write("injected", fault=text, **content)
+
+    return note
 
 
 def _list(robots: Iterable[str]) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from auv_vessel.eyes import Detections
 from auv_vessel.wire.ports import CHANNEL
 from mmrs_auv.backend.options import Connecting, connecting
@@ -16,27 +14,12 @@ from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_runtime.controllers.box_entries import PROCESS
 from mmrs_runtime.engine.clocks import FollowingClock, RealClock
-from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.injection import Rehearsal, injections, noted_in
 from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.records.steps import log_name
 
 SHARED = "injected faults of CAN buses"
-
-
-@dataclass(slots=True)
-class Faults:
-    """The faults of all robots of a run; `users` are those that still have any."""
-
-    rehearsal: Rehearsal
-    users: set[str] = field(default_factory=set)
-
-    def let_go(self, robot: str) -> None:
-        """End what concerns a robot, and everything with the last one."""
-        self.rehearsal.forget(robot)
-        self.users.discard(robot)
-        if not self.users:
-            self.rehearsal.close()
 
 
 def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
@@ -72,9 +55,7 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     orders = BehaviourOrders(given, sheet, Waters(surface), sight)
     faults, box = faults_of(given, live, options.inject), _box(given, live)
     if faults is not None:
-        faults.users.add(robot)
-        if box is not None:
-            faults.rehearsal.record(robot, lambda text, content: box.write("injected", fault=text, **content))
+        faults.record(robot, noted_in(box))
     try:
         return on_its_bus(
             robot,
@@ -92,22 +73,22 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
             },
             box=box,
             eyes=eyes,
-            rehearsal=None if faults is None else faults.rehearsal,
-            let_go=(lambda: None) if faults is None else lambda: faults.let_go(robot),
+            rehearsal=faults,
+            let_go=(lambda: None) if faults is None else lambda: faults.forget(robot),
         )
     except OSError as error:
         raise LinkLostError(f"robot '{robot}': {channel}: {error}") from error
 
 
-def faults_of(given: VehicleInput, live: Live, text: str) -> Faults | None:
+def faults_of(given: VehicleInput, live: Live, text: str) -> Rehearsal | None:
     """Return the faults of a run, begun; None if none are asked for.
 
     Raises:
         UsageError: one is none, or concerns what no vehicle on a bus has.
     """
     found = live.shared.get(SHARED)
-    if isinstance(found, Faults) or not text:
-        return found if isinstance(found, Faults) else None
+    if isinstance(found, Rehearsal) or not text:
+        return found if isinstance(found, Rehearsal) else None
     buses = {robot.id: live.links.get(robot.id, robot.id) for robot in given.program.robots}
     try:
         asked = injections([text], buses)
@@ -116,8 +97,8 @@ def faults_of(given: VehicleInput, live: Live, text: str) -> Faults | None:
     for fault in asked.faults:
         if fault.name in (*OF_VEHICLE, *OF_STATIONS):
             raise UsageError(f"option 'inject': {fault.text}: is for vehicles that speak MAVLink")
-    made = live.shared[SHARED] = Faults(Rehearsal(asked, FollowingClock(live.clock), live.announce))
-    made.rehearsal.start()
+    made = live.shared[SHARED] = Rehearsal(asked, FollowingClock(live.clock), live.announce)
+    made.start()
     return made
 
 

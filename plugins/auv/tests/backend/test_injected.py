@@ -10,7 +10,7 @@ from can_hub import running
 from dives import dive, diver
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.backend.connected import Faults, faults_of
+from mmrs_auv.backend.connected import faults_of
 from mmrs_auv.controllers.connected import frame_of, injected, piece_of
 
 from auv_vessel.hosting import clock_frame
@@ -19,6 +19,7 @@ from auv_vessel.wire.ports import Port, open_port
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import UsageError
 from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.injection import Rehearsal
 
 FRAMES = st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8)) | st.builds(
     Frame, st.integers(0, (1 << 29) - 1), st.binary(max_size=8), st.just(True)
@@ -35,7 +36,7 @@ def asked() -> VehicleInput:
     return VehicleInput(behaviour, behaviour.robots[0], diver(), {}, {}, {}, {})
 
 
-def faults(text: str) -> Faults:
+def faults(text: str) -> Rehearsal:
     found = faults_of(asked(), live(), text)
     assert found is not None
     return found
@@ -48,8 +49,8 @@ def between(text: str) -> Iterator[tuple[Port, Port]]:
         channel = f"can0@127.0.0.1:{hub.port}"
         with open_port("socketcand", channel) as ours, open_port("socketcand", channel) as theirs:
             made = faults(text)
-            yield injected(ours, made.rehearsal, "naiad"), theirs
-            made.let_go("naiad")
+            yield injected(ours, made, "naiad"), theirs
+            made.forget("naiad")
 
 
 @given(FRAMES)
@@ -97,7 +98,7 @@ def test_all_robots_of_a_run_have_the_same_faults() -> None:
     first = faults_of(asked(), of_run, "loss=0.1")
     assert faults_of(asked(), of_run, "loss=0.1") is first
     assert first is not None
-    first.let_go("naiad")
+    first.forget("naiad")
 
 
 @pytest.mark.parametrize(

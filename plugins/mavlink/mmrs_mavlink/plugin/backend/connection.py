@@ -39,7 +39,7 @@ from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.user_functions import Locator, where_expected
 from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.faults import FaultError
-from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.injection import Rehearsal, injections, noted_in
 from mmrs_runtime.ports import Port
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.records.steps import log_name
@@ -49,19 +49,11 @@ SHARED = "mavlink"
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """What all robots of a run share; `users` are those that still do."""
+    """What all robots of a run share."""
 
     clock: Clock
     radios: Radios
     rehearsal: Rehearsal
-    users: set[str]
-
-    def let_go(self, robot: str) -> None:
-        """End what concerns a robot, and everything with the last one."""
-        self.rehearsal.forget(robot)
-        self.users.discard(robot)
-        if not self.users:
-            self.rehearsal.close()
 
 
 def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
@@ -170,7 +162,7 @@ def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
     def wrap(port: Port, url: str) -> Port:
         return rehearsal.wrap(port, sharers.get(url, []))
 
-    fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal, set())
+    fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal)
     live.shared[SHARED] = fleet
     return fleet
 
@@ -220,11 +212,7 @@ def _equipment(
     box = _box(given, live, fleet.clock)
     vehicle = at_end_of(link, program, options.acceptance, home_tolerance, live.say, box, fleet.clock)
     home = given.robot.home or (0.0, 0.0, 0.0)
-    if box is not None:
-        fleet.rehearsal.record(
-            given.robot.id, lambda text, content: box.write("injected", fault=text, **content)
-        )
-    fleet.users.add(given.robot.id)
+    fleet.rehearsal.record(given.robot.id, noted_in(box))
     fleet.rehearsal.attend(given.robot.id, attended(link))
     locators: dict[str, Locator] = {each: where_expected for each in objects_in(given.robot)}
     joules = sum(battery.energy for battery in given.type.batteries) or None
@@ -248,7 +236,7 @@ def _equipment(
         precautions=Precautions(options.device_check, options.battery_check, options.try_devices),
         records=live.records,
         start=_once(fleet.rehearsal.start, live.shared),
-        let_go=lambda: fleet.let_go(given.robot.id),
+        let_go=lambda: fleet.rehearsal.forget(given.robot.id),
     )
 
 
