@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import hypot
 
 from auv_vessel.refusals import MOST_DEPTH, MOST_SPEED, SheetError, refuse
 from auv_vessel.sheet import Sheet, Thruster, Vector, unknown
 from mmrs_auv.kinds import SEA_WATER, largest_depth, thrusters_of
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, MOUNTING
+from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.errors import InfeasibleError, UnsupportedError
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import Device, Part, Position, RobotType
@@ -80,6 +81,15 @@ def sheet_of(
         who = f"robot '{robot}', type '{robot_type.name}'"
         raise UnsupportedError(f"{who}: no bus can be made of it", error.faults) from error
     return sheet
+
+
+def sheet_of_robot(
+    program: Program, robot: RobotProgram, robot_type: RobotType, environment: Mapping[str, float]
+) -> Sheet:
+    """Return the data of the vehicle of a robot of a behaviour; errors as in `sheet_of`."""
+    surface = program.frame.surface
+    home, density = robot.home or (0.0, 0.0, surface), environment.get("waterDensity")
+    return sheet_of(robot_type, robot.id, home=home, surface=surface, payload=robot.payload, density=density)
 
 
 def action_number(robot_type: RobotType, device: str, action: str) -> int | None:

@@ -9,7 +9,7 @@ from mmrs_auv.backend.orders import BehaviourOrders
 from mmrs_auv.controllers.connected import ConnectedVehicle, Reach
 from mmrs_auv.controllers.connected import connected as on_its_bus
 from mmrs_auv.controllers.orders import Waters
-from mmrs_auv.sheets import sheet_of
+from mmrs_auv.sheets import sheet_of_robot
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_runtime.controllers.box_entries import PROCESS
@@ -31,15 +31,7 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     """
     options, robot, clock = connecting(given.options), given.robot.id, live.clock
     assert isinstance(clock, RealClock)
-    surface = given.program.frame.surface
-    sheet = sheet_of(
-        given.type,
-        robot,
-        home=given.robot.home or (0.0, 0.0, surface),
-        surface=surface,
-        payload=given.robot.payload,
-        density=given.environment.get("waterDensity"),
-    )
+    sheet = sheet_of_robot(given.program, given.robot, given.type, given.environment)
     channel = live.links.get(robot, "") or options.channel or CHANNEL
     reach = Reach(
         options.interface,
@@ -52,7 +44,7 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     )
     eyes = _eyes(given, options)
     sight = None if eyes is None or options.objects == "expected" else eyes.place
-    orders = BehaviourOrders(given, sheet, Waters(surface), sight)
+    orders = BehaviourOrders(given, sheet, Waters(given.program.frame.surface), sight)
     faults, box = faults_of(given, live, options.inject), _box(given, live)
     if faults is not None:
         faults.record(robot, noted_in(box))

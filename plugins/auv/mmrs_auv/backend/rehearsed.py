@@ -23,11 +23,10 @@ from mmrs_auv.backend.options import Rehearsing, rehearsing
 from mmrs_auv.backend.orders import BehaviourOrders
 from mmrs_auv.controllers.orders import Waters
 from mmrs_auv.controllers.vehicle import CanVehicle
-from mmrs_auv.sheets import sheet_of
+from mmrs_auv.sheets import sheet_of_robot
 from mmrs_core.contributions.execution import Fault, Sample
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.scene import Position
 
 PACE = 0.2
 """Simulated seconds between two looks at a vehicle."""
@@ -249,15 +248,7 @@ def rehearsed(given: VehicleInput) -> RehearsedRobot:
         UnsupportedError: its type lacks data, an option is unknown, or it cannot do what its program holds.
     """
     options = rehearsing(given.options)
-    home: Position = given.robot.home or (0.0, 0.0, given.program.frame.surface)
-    sheet = sheet_of(
-        given.type,
-        given.robot.id,
-        home=home,
-        surface=given.program.frame.surface,
-        payload=given.robot.payload,
-        density=given.environment.get("waterDensity"),
-    )
+    sheet = sheet_of_robot(given.program, given.robot, given.type, given.environment)
     north, east, depth = sheet.home
     sheet = replace(sheet, home=(north + options.start[0], east + options.start[1], depth))
     return RehearsedRobot(given, sheet, Stage(sheet, _surroundings(given, options), options), options)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from auv_vessel.sheet import Sheet, to_json
 from mmrs_auv.names import VEHICLES
 from mmrs_auv.sayable import Bus, parameter_of, unturnable
-from mmrs_auv.sheets import is_vehicle, sheet_of
+from mmrs_auv.sheets import is_vehicle, sheet_of_robot
 from mmrs_auv.targets.capabilities import OF_VEHICLES
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.behaviour.program import Action, Heading, RobotProgram
@@ -104,14 +104,8 @@ class CanPython(PythonDriver[RobotContext]):
 
 
 def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
-    return sheet_of(
-        input.types[robot.type_name],
-        robot.id,
-        home=require_home(robot),
-        surface=input.program.frame.surface,
-        payload=robot.payload,
-        density=input.environment.get("waterDensity"),
-    )
+    require_home(robot)
+    return sheet_of_robot(input.program, robot, input.types[robot.type_name], input.environment)
 
 
 CAN_PYTHON = python_target(CanPython())
