@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import signal
@@ -17,6 +18,8 @@ from whole_files import ByGroup, InWorkers
 
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
 THOROUGH = "thorough"
+ALIVE = 50_000
+"""Objects more than which come to be before Python looks for cycles: by default, that is 20 s of all tests."""
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 
@@ -33,6 +36,7 @@ def pytest_configure(config: pytest.Config) -> None:
         keep_bytecode_elsewhere(config)
     if not AT_WORK_WITH_OTHERS:
         config.add_cleanup(shared.open_folder())
+    gc.set_threshold(ALIVE, 20, 20)
     obey_interrupts()
     same_examples.pytest_configure()
     take_examples_by_profile(config)

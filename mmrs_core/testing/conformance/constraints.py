@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import pytest
-from hypothesis import HealthCheck, given, note, settings
+from hypothesis import given, note
 from hypothesis import strategies as st
 
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene.primitives import BEHAVIOUR, CONTEXT, MISSION
-from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.conformance.declared import Conformance, declared, law
 from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 from mmrs_core.testing.models import breaches, findings
 
@@ -23,9 +23,6 @@ WHOLE = (
     (MISSION, "Mission"),
     (CONTEXT, "Context"),
     (BEHAVIOUR, "Behaviour"),
-)
-RELAXED = settings(
-    deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 
@@ -107,13 +104,13 @@ class ConstraintConformance(Conformance):
 def _crashes_none_of(constraints: Sequence[Constraint], models: st.SearchStrategy[Sequence[Element]]) -> None:
     """Draw models; whatever constraints find in them has a place and a message."""
 
-    @RELAXED
+    @law(examples=15)
     @given(models)
-    def law(roots: Sequence[Element]) -> None:
+    def holds(roots: Sequence[Element]) -> None:
         for constraint in constraints:
             note(f"constraint {constraint.code}")
             for finding in findings(constraint, roots):
                 assert isinstance(finding.element, Element)
                 assert finding.message
 
-    law()
+    holds()

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from mmrs_core import builtin
 from mmrs_core.behaviour.program import Move, MoveTarget
@@ -18,6 +19,16 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource, Registry
 from mmrs_core.plugins import load_plugins
 from mmrs_core.scene import Position
+
+
+def law(examples: int) -> settings:
+    """Return the settings of a law that draws so many examples where hypothesis' profile asks for 100.
+
+    With a profile that asks for more or fewer, it draws as many times more or fewer, but at least 5.
+    """
+    count = max(5, examples * settings().max_examples // 100)
+    relaxed = [HealthCheck.too_slow, HealthCheck.data_too_large]
+    return settings(deadline=None, max_examples=count, suppress_health_check=relaxed)
 
 
 def declared(plugin: object, sort: str) -> tuple[Any, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_core.languages.conformance import check_conformance
@@ -14,13 +14,9 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.conformance.declared import Conformance, declared, law
 from mmrs_core.testing.instances import instances_of
 from mmrs_core.testing.kinds import kinds_below
-
-RELAXED = settings(
-    deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
 
 
 class MetamodelConformance(Conformance):
@@ -56,9 +52,9 @@ class MetamodelConformance(Conformance):
         """What is written is read back as the same valid model."""
         alone = [each for each in self._metaclasses(registry) if _stands_alone(registry, each)]
 
-        @RELAXED
+        @law(examples=25)
         @given(st.one_of([instances_of(registry, *each.key) for each in alone]))
-        def law(root: Element) -> None:
+        def holds(root: Element) -> None:
             assert check_conformance(Model("m", (root,)), registry) == ()
             text = to_xmi([root], registry)
             again = read_text(text, "again.xmi", registry)
@@ -66,7 +62,7 @@ class MetamodelConformance(Conformance):
             assert to_xmi(again.roots, registry) == text
 
         if alone:
-            law()
+            holds()
 
     def _sources(self) -> tuple[MetamodelSource, ...]:
         return declared(self.plugin, "metamodels")

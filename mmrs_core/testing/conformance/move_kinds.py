@@ -9,19 +9,18 @@ from math import hypot, isfinite
 from typing import ClassVar
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Kinematics, Position
-from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.conformance.declared import Conformance, declared, law
 from mmrs_core.testing.scenes import FLYER
 
 STATES = frozenset({"grounded", "airborne", "moving"})
 MODES = ("SAFE", "NORMAL", "AGGRESSIVE")
 SMALL = 1e-6
-RELAXED = settings(deadline=None, max_examples=50)
 _METRES = st.integers(-5000, 5000).map(lambda tenths: tenths / 10)
 POSITIONS = st.tuples(_METRES, _METRES, _METRES)
 
@@ -50,9 +49,9 @@ class MoveKindConformance(Conformance):
     def test_a_path_begins_where_the_robot_is(self, move_kind: MoveKind) -> None:
         """And it leads through places that exist, the same ones whenever it is asked for."""
 
-        @RELAXED
+        @law(examples=50)
         @given(POSITIONS, st.none() | POSITIONS)
-        def law(here: Position, home: Position | None) -> None:
+        def holds(here: Position, home: Position | None) -> None:
             path = move_kind.path(self._move(move_kind), here, home)
             if path is None:
                 return
@@ -60,7 +59,7 @@ class MoveKindConformance(Conformance):
             assert all(isfinite(each) for place in path for each in place)
             assert path == move_kind.path(self._move(move_kind), here, home)
 
-        law()
+        holds()
 
     def test_what_vehicles_make_of_it_is_known_without_a_home(self, move_kind: MoveKind) -> None:
         """Targets ask for a path at the origin, without a home: how high a take-off rises, how a GoTo bends.
@@ -85,9 +84,9 @@ class MoveKindConformance(Conformance):
     ) -> None:
         """The bounds are in order, and no robot exceeds its largest speed."""
 
-        @RELAXED
+        @law(examples=50)
         @given(POSITIONS)
-        def law(here: Position) -> None:
+        def holds(here: Position) -> None:
             path = move_kind.path(self._move(move_kind), here, (0.0, 0.0, 0.0)) or (here,)
             seconds = move_kind.seconds(self._move(move_kind), path, self.kinematics, mode)
             shortest, expected, longest = seconds
@@ -96,7 +95,7 @@ class MoveKindConformance(Conformance):
             assert isfinite(longest)
             assert shortest >= _least(path, self.kinematics) - SMALL
 
-        law()
+        holds()
 
     def test_a_move_that_says_nothing_crashes_nothing(self, move_kind: MoveKind) -> None:
         """Models are looked at while they are half done."""

@@ -10,18 +10,17 @@ from math import inf
 from typing import ClassVar, get_args
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, PolicyEvent, PolicyResponse, Position, Robot, Scene, TravelMode
-from mmrs_core.testing.conformance.declared import Conformance, declared, made_by
+from mmrs_core.testing.conformance.declared import Conformance, declared, law, made_by
 from mmrs_core.testing.scenes import sample_scene
 
 SMALL = 1e-6
-RELAXED = settings(deadline=None, max_examples=50)
 _METRES = st.integers(-500, 500).map(float)
 _STEPS = st.tuples(st.sampled_from(("east", "north", "up", "all")), _METRES, _METRES, _METRES)
 
@@ -108,15 +107,15 @@ class RobotKindConformance(Conformance):
         """Moves may join legs, but leave out no place and add none."""
         robot = self.robots[robot_kind.name]
 
-        @RELAXED
+        @law(examples=50)
         @given(st.lists(_STEPS, max_size=6))
-        def law(steps: list[tuple[str, float, float, float]]) -> None:
+        def holds(steps: list[tuple[str, float, float, float]]) -> None:
             route = _route(robot.home, steps)
             wanted = [route[0], *(after for before, after in pairwise(route) if before != after)]
             passed = _passed(robot_kind.travel(route), robot.home, robot.home, alone)
             assert [passed[0], *(after for before, after in pairwise(passed) if before != after)] == wanted
 
-        law()
+        holds()
 
     def test_every_fault_has_an_answer(self, robot_kind: RobotKind) -> None:
         """A robot without orders does something that its kind knows to be safe."""

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import pytest
 import shapely
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_core.contributions.registry import Contributions
@@ -20,11 +20,10 @@ from mmrs_core.geometry.segments import legs_of, prism_distance
 from mmrs_core.languages.registry import Registry
 from mmrs_core.planning.strokes import serve_seconds
 from mmrs_core.scene import Area, Kinematics, Part, Position, Robot, Scene, Task, Value, Work
-from mmrs_core.testing.conformance.declared import Conformance, declared, made_by
+from mmrs_core.testing.conformance.declared import Conformance, declared, law, made_by
 from mmrs_core.testing.scenes import FLYER, sample_robot, sample_scene, sample_task, square
 
 SMALL = 1e-6
-RELAXED = settings(deadline=None, max_examples=20, suppress_health_check=[HealthCheck.too_slow])
 
 
 class RuleConformance(Conformance):
@@ -119,12 +118,12 @@ class RuleConformance(Conformance):
         """An obstacle that is put on the way is gone around by the work, or makes it impossible."""
         places = _places(self._work(rule))
 
-        @RELAXED
+        @law(examples=20)
         @given(st.sampled_from(places), st.floats(0.1, 30.0))
-        def law(place: Position, half: float) -> None:
+        def holds(place: Position, half: float) -> None:
             self._clear(rule, square("mast", place[0], place[1], half, place[2] + 50.0))
 
-        law()
+        holds()
 
     @pytest.mark.parametrize("share", [0.0, 0.5, 1.0, 2.0])
     def test_work_stays_below_the_ceiling_or_is_refused(self, rule: Rule, share: float) -> None:
