@@ -19,7 +19,7 @@ from whole_files import ByGroup, InWorkers
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
 THOROUGH = "thorough"
 ALIVE = 50_000
-"""Objects more than which come to be before Python looks for cycles: by default, that is 20 s of all tests."""
+"""More objects than this are made before Python looks for cycles; by default it looks too often for tests."""
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 

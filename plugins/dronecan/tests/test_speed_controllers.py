@@ -7,6 +7,7 @@ from typing import Any
 
 import dronecan
 import pytest
+from counts import many
 from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer, TransferManager
 from hypothesis import HealthCheck, given, settings
@@ -199,7 +200,7 @@ class Any29:
         max_size=40,
     )
 )
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=many(2000, fast=60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_anything_at_all_is_heard_without_an_error(frames: list[Any29]) -> None:
     driver = opened_fast(6)
     for frame in frames:

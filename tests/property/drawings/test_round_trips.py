@@ -40,7 +40,7 @@ def _place_in_gpx(feature: MapFeature) -> int:
     ("first", "second"),
     [pytest.param(*pair, marks=() if pair in FAST else pytest.mark.thorough) for pair in PAIRS],
 )
-@settings(max_examples=many(400))
+@settings(max_examples=many(400, fast=15))
 @given(drawing=drawings(), title=st.text(max_size=10))
 def test_a_round_trip_keeps_shapes_and_all_that_is_said_of_them(first, second, drawing, title):
     drawing = Drawing(tuple(sorted(drawing.features, key=_place_in_gpx)))
@@ -88,6 +88,7 @@ def test_of_any_bytes_a_table_comes_or_a_clear_error(data, header):
 
 
 @pytest.mark.parametrize("format", WRITERS)
+@settings(max_examples=many(2000, fast=15))
 @given(drawing=drawings(), data=st.data())
 def test_of_a_damaged_file_comes_a_drawing_or_a_clear_error(format, drawing, data):
     write, read = WRITERS[format]

@@ -3,7 +3,8 @@
 from dataclasses import replace
 from math import cos, inf, sin
 
-from hypothesis import example, given
+from counts import many
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from plain_scenes import DRONE, box, road, robot, scene
 
@@ -85,6 +86,7 @@ def test_a_stroke_at_the_limit_is_planned_and_safe(origin, half, error, safety, 
     assert nearest.margin <= 1e-3
 
 
+@settings(max_examples=many(2000, fast=12))
 @given(
     origin=ORIGINS,
     least=st.floats(1.0, 9.0),

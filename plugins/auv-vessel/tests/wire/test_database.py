@@ -8,6 +8,7 @@ from typing import Any
 import cantools
 import pytest
 from cantools.database import Database
+from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from vessel_sheets import sheet, sheets, thruster
@@ -23,7 +24,7 @@ def loaded(vehicle: Sheet) -> Database:
 
 
 @given(sheets())
-@settings(max_examples=5, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=many(50, fast=3), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_the_text_loads_to_the_same_database(vehicle: Sheet) -> None:
     found, own = loaded(vehicle), database_of(vehicle)
     assert [shown(message) for message in found.messages] == [shown(message) for message in own.messages]
@@ -47,7 +48,7 @@ def shown(message: Any) -> tuple[Any, ...]:
 
 
 @given(sheets(), st.data())
-@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=many(100, fast=5), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_cantools_reads_the_same_values_by_the_file(vehicle: Sheet, data: st.DataObject) -> None:
     codec, database = Codec(vehicle), loaded(vehicle)
     message = data.draw(st.sampled_from(messages_of(vehicle)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 
 import pytest
+from counts import many
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -59,7 +60,7 @@ def test_every_name_makes_names_that_python_takes(name):
     assert not keyword.iskeyword(names.task)
 
 
-@settings(max_examples=20)
+@settings(max_examples=many(200, fast=8))
 @given(st.sampled_from(list(GEOMETRIES)), NAMES)
 @example("point", LONGEST)
 @example("line", LONGEST)
