@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
-from math import ceil, floor, inf
+from math import ceil, floor, inf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.diversions import Diversions
@@ -33,7 +37,7 @@ _PORTIONS_PER_ROBOT = 50
 _PORTIONS_PER_CHARGE = 10
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Material:
     """A work as portions that go to one robot each, in one direction.
 
@@ -66,6 +70,36 @@ class Material:
     def last(self, index: int) -> Position:
         """Return where a portion ends."""
         return self.portions[index][-1].points[-1]
+
+    @cached_property
+    def _firsts(self) -> NDArray[np.float64]:
+        return np.array([self.first(index) for index in range(len(self))])
+
+    @cached_property
+    def _lasts(self) -> NDArray[np.float64]:
+        return np.array([self.last(index) for index in range(len(self))])
+
+    def nearest(self, place: Position) -> int:
+        """Return the first of the portions that begin nearest to a place."""
+        return int(((self._firsts - place) ** 2).sum(axis=1).argmin())
+
+    def metres_to(self, place: Position) -> float:
+        """Return the level distance from a place to where the nearest portion begins."""
+        return _nearest_metres(self._firsts, place)
+
+    def metres_from(self, place: Position) -> float:
+        """Return the level distance to a place from where the nearest portion ends."""
+        return _nearest_metres(self._lasts, place)
+
+    @cached_property
+    def longest_hop(self) -> float:
+        """Return the most seconds from the end of a portion to the beginning of the next."""
+        return max((max(0.0, two[0] - one[1]) for one, two in pairwise(self.spans[1])), default=0.0)
+
+    @cached_property
+    def fastest(self) -> float:
+        """Return the highest speed at which a robot goes to a portion; 0: its cruise, at all of them."""
+        return max((each for each in self.speeds if each is not None), default=0.0)
 
     def seconds(self, begin: int, end: int) -> float:
         """Return the seconds from the beginning of one portion to the end of another, hops included."""
@@ -104,6 +138,10 @@ class Material:
     def strokes(self, begin: int, end: int) -> tuple[Stroke, ...]:
         """Return the strokes of a run of portions, parts of one stroke put together again."""
         return joined(stroke for portion in self.portions[begin : end + 1] for stroke in portion)
+
+
+def _nearest_metres(places: NDArray[np.float64], place: Position) -> float:
+    return sqrt(((places[:, :2] - place[:2]) ** 2).sum(axis=1).min())
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,7 +90,12 @@ class Obstacles:
         self.drawn = np.array([Polygon(shell) for shell in shells], dtype=np.object_)
         shapely.prepare(self.smaller)
         self._corners: list[Floats] | None = None
-        sides = np.diff(shapely.bounds(self.smaller).reshape(-1, 2, 2), axis=1)
+        boxes = shapely.bounds(self.smaller).reshape(-1, 2, 2)
+        self._boxes = (
+            np.column_stack([boxes[:, 0], self.low]),
+            np.column_stack([boxes[:, 1], self.high]),
+        )
+        sides = np.diff(boxes, axis=1)
         self._piece = _SIDES * float(sides.mean()) if len(areas) else 1.0
         self._tree = shapely.STRtree(self.smaller)
 
@@ -126,6 +131,8 @@ class Obstacles:
             spare: metres to keep on top of clearances, for what is lost when coordinates are rounded.
         """
         found = np.zeros((len(legs), len(self)), dtype=np.bool_)
+        if len(legs) == 1 and self._is_far(legs[0]):
+            return found
         leg, area = self._meetings(legs[:, :, :2])
         if not len(leg):
             return found
@@ -140,6 +147,11 @@ class Obstacles:
         hit[hit] = self._too_near(parts[hit], area[hit], spare)
         found[leg[hit], area[hit]] = True
         return found
+
+    def _is_far(self, leg: Floats) -> bool:
+        """Return whether the box about a leg, heights included, meets that of no grown shape."""
+        low, high = np.minimum(leg[0], leg[1]), np.maximum(leg[0], leg[1])
+        return not ((self._boxes[0] <= high) & (self._boxes[1] >= low)).all(axis=1).any()
 
     def blocks_at(self, height: float) -> Flags:
         """Return (areas,): which areas block at a height."""

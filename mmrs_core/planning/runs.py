@@ -121,9 +121,21 @@ class PortionRun:
             if not self._extend():
                 return self._end
         for sortie in reversed(self._sorties):
-            if self.back(sortie.first) <= time:
-                return _largest(sortie.first, sortie.last, lambda j: self.back(j) <= time)
+            is_back = self._is_back(sortie, time)
+            if is_back(sortie.first):
+                return _largest(sortie.first, sortie.last, is_back)
         return self.begin - 1
+
+    def _is_back(self, sortie: _Sortie, time: float) -> Callable[[int], bool]:
+        """Return whether the robot is back by a time after a portion of a sortie."""
+        began, seconds, last = sortie.state.time, self.material.seconds, self.material.last
+        end, first = self._pilot.end_seconds, sortie.first
+
+        def is_back(portion: int) -> bool:
+            ended = began + seconds(first, portion)
+            return ended <= time and ended + end(last(portion)) <= time
+
+        return is_back
 
     def state(self, portion: int) -> State:
         """Return the state after ending with a portion that can be done."""

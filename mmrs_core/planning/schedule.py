@@ -64,7 +64,7 @@ class Schedule:
 
 @dataclass(frozen=True, slots=True)
 class Shortfall:
-    """A job that no robots could be found for, and how many jobs are left with it."""
+    """A job that no robots could be found for, by the time given if one was, and how many jobs are left."""
 
     job: str
     left: int
@@ -83,17 +83,20 @@ def signal_name(job: str, robot: str) -> str:
 
 
 def schedule(
-    team: Team, jobs: Sequence[Job], decisions: Decisions, *, record: bool = False
+    team: Team, jobs: Sequence[Job], decisions: Decisions, *, record: bool = False, limit: float = inf
 ) -> Schedule | Shortfall:
     """Return the schedule that follows from decisions.
+
+    One whose makespan is beyond a limit is not of interest: as soon as that is known, it is a shortfall.
 
     Args:
         team: of the scene.
         jobs: of the scene.
         decisions: order, groups, delays.
         record: whether the states carry all steps.
+        limit: seconds.
     """
-    return _Scheduling(team, decisions, record).run(jobs)
+    return _Scheduling(team, decisions, record, limit).run(jobs)
 
 
 def _merged(known: Mapping[str, Mapping[str, _Value]], jobs: Iterable[str]) -> dict[str, _Value]:
@@ -102,8 +105,8 @@ def _merged(known: Mapping[str, Mapping[str, _Value]], jobs: Iterable[str]) -> d
 
 
 class _Scheduling:
-    def __init__(self, team: Team, decisions: Decisions, record: bool) -> None:
-        self._team, self._decisions, self._record = team, decisions, record
+    def __init__(self, team: Team, decisions: Decisions, record: bool, limit: float) -> None:
+        self._team, self._decisions, self._record, self._limit = team, decisions, record, limit
         self._tasks = {task.name: task for task in team.scene.tasks}
         self._states: dict[str, State] = {
             name: team.starts.setdefault((name, delay), pilot.start(delay))
@@ -121,7 +124,7 @@ class _Scheduling:
         while waiting:
             job = next(job for job in waiting if all(name in self._ends for name in job.after))
             waiting.remove(job)
-            if not self._do(job):
+            if not self._do(job) or not self._in_time(waiting):
                 return Shortfall(job.name, len(waiting) + 1)
         pilots = self._team.pilots
         backs = {
@@ -131,13 +134,22 @@ class _Scheduling:
         }
         return Schedule(self._states, self._spans, self._ends, backs)
 
+    def _in_time(self, waiting: Iterable[Job]) -> bool:
+        """Return whether jobs so far have ended by the limit, and robots have time left for the others."""
+        if self._limit == inf:
+            return True
+        left = sum(max(0.0, self._limit - state.time) for state in self._states.values())
+        single = (job.name for job in waiting if job.choice is None and job.tasks())
+        work = sum(map(self._team.fewest_seconds, single))
+        return work <= left and max((end for _, end in self._spans.values()), default=0.0) <= self._limit
+
     def _do(self, job: Job) -> bool:
         if not job.tasks():
             before = [*job.after]
             self._ends[job.name] = _merged(self._ends, before)
             self._bounds[job.name] = _merged(self._bounds, before)
             return True
-        done = self._chosen_or_shared(job) if self._record else self._remembered(job)
+        done = self._chosen_or_shared(job, self._fillings(job)) if self._record else self._remembered(job)
         if done is None:
             return False
         self._states.update(done.states)
@@ -148,6 +160,8 @@ class _Scheduling:
 
     def _remembered(self, job: Job) -> JobResult | None:
         """Do a job, or return what became of it in an earlier schedule in which all that matters was alike.
+
+        Where no robots can be back from it by the limit, it is not found out when they are.
 
         States stand for themselves in the key: a new one is another one.
         """
@@ -161,20 +175,33 @@ class _Scheduling:
         before = tuple((*self._ends[name].items(), *self._bounds[name].items()) for name in job.after)
         wanted = tuple(self._tasks[name].wanted for name in job.tasks())
         key = (job.name, self._decisions.groups.get(job.name), turns, wanted, before, *map(id, states))
-        known = self._team.done.get(key)
-        if known is None:
-            known = self._team.done[key] = (states, self._chosen_or_shared(job))
-        return known[1]
+        _, done, limit = self._team.done.get(key, (states, None, -inf))
+        if done is None and limit < self._limit:
+            fillings = [] if job.choice is not None else list(self._fillings(job))
+            late = self._is_late(fillings)
+            done = None if late else self._chosen_or_shared(job, fillings)
+            self._team.done[key] = (states, done, self._limit if late else inf)
+        return done
 
-    def _chosen_or_shared(self, job: Job) -> JobResult | None:
-        return self._chosen(job) if job.choice is not None else self._shared(job)
+    def _is_late(self, fillings: Sequence[Filling]) -> bool:
+        """Return whether it is known that no robots can be back by the limit.
 
-    def _shared(self, job: Job) -> JobResult | None:
+        It is not where robots end where they are: elsewhere they may be on the ground sooner.
+        """
+        if self._limit == inf or not fillings or self._decisions.in_turns:
+            return False
+        home = all(pilot.robot.return_home for pilot in self._team.pilots.values())
+        return home and not any(each.shares(self._limit) for each in fillings)
+
+    def _chosen_or_shared(self, job: Job, fillings: Iterable[Filling]) -> JobResult | None:
+        return self._chosen(job) if job.choice is not None else self._shared(fillings)
+
+    def _shared(self, fillings: Iterable[Filling]) -> JobResult | None:
         if self._decisions.in_turns:
-            tried = [self._in_turns(found) for each in self._fillings(job) if (found := earliest(each))]
+            tried = [self._in_turns(found) for each in fillings if (found := earliest(each))]
             return min((each for each in tried if each is not None), key=lambda each: each.back, default=None)
         best: Sharing | None = None
-        for each in self._fillings(job):
+        for each in fillings:
             best = earliest(each, inf if best is None else best.back - 1e-6) or best
         return None if best is None else self._at_once(best)
 
@@ -263,9 +290,12 @@ class _Scheduling:
                 continue
             pilot, state = self._team.pilots[name], self._states[name]
             ready = self._ready(job, name, task.earliest)
-            backwards = partial(self._team.backwards, job.name, name)
-            each = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
-            found.append((each.run(0).back(0), each))
+            known = self._team.candidates.get(key := (job.name, name, id(state), ready, self._record))
+            if known is None:
+                backwards = partial(self._team.backwards, job.name, name)
+                known = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
+                self._team.candidates[key] = known
+            found.append((known.run(0).back(0), known))
         return [each for _, each in sorted(found, key=lambda pair: pair[0])]
 
     def _choices_of(

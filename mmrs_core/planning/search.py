@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, pairwise, permutations, product
 from math import ceil, factorial, inf, prod
+from operator import itemgetter
 from random import Random
 from typing import TypeAlias
 
@@ -17,6 +18,11 @@ from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.team import Team
 
 Cost: TypeAlias = tuple[float, float, float]
+
+_WORST: Cost = (inf, inf, inf)
+
+_ALIKE = 1e-3
+"""Seconds by which makespans differ at most that count as alike."""
 
 _STEPS = 40
 """Schedules that are tried; a count, not a time, so that the same seed gives the same plan."""
@@ -58,7 +64,9 @@ def find_decisions(
     if len(jobs) * len(team.pilots) <= _MOST_PAIRS or not any(
         isinstance(each, Schedule) for _, each in tried
     ):
-        tried += [(each, schedule(team, jobs, each)) for each in starts]
+        for each in starts:
+            least = min((cost_of(team, found) for _, found in tried), default=_WORST)
+            tried.append((each, schedule(team, jobs, each, limit=_limit(least))))
     best, found = min(tried, key=lambda pair: cost_of(team, pair[1]))
     effort.found(cost_of(team, found)[1] if isinstance(found, Schedule) else inf)
     random, idle = Random(seed), 0
@@ -67,8 +75,9 @@ def find_decisions(
         if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= steps or effort.over):
             break
         other = _varied(team, jobs, best, random)
-        result = schedule(team, jobs, other)
-        cost, least = cost_of(team, result), cost_of(team, found)
+        least = cost_of(team, found)
+        result = schedule(team, jobs, other, limit=_limit(least))
+        cost = cost_of(team, result)
         if cost < _slightly_less(least):
             best, found, idle = other, result, 0
             continue
@@ -84,7 +93,8 @@ def _with_better_order(
     """Return decisions with the best order of few jobs, by which sorties may become fuller."""
     if factorial(len(jobs)) * _size(team, jobs) > _EFFORT:
         return best, found
-    tried = ((each, schedule(team, jobs, each)) for each in _orders(team, jobs, best))
+    limit = _limit(cost_of(team, found))
+    tried = ((each, schedule(team, jobs, each, limit=limit)) for each in _orders(team, jobs, best))
     return min(((best, found), *tried), key=lambda pair: _slightly_rounded(cost_of(team, pair[1])))
 
 
@@ -96,15 +106,16 @@ def _with_better_numbers(
     tries = [(name, size) for name, most in sizes.items() for size in range(1, most + 1) if most > 1]
     for name, size in tries if len(tries) * _size(team, jobs) <= _EFFORT else ():
         other = replace(best, groups={**best.groups, name: size})
-        result = schedule(team, jobs, other)
-        if cost_of(team, result) < _slightly_less(cost_of(team, found)):
+        least = cost_of(team, found)
+        result = schedule(team, jobs, other, limit=_limit(least))
+        if cost_of(team, result) < _slightly_less(least):
             best, found = other, result
     return best, found
 
 
-def first_cost(team: Team, jobs: Sequence[Job]) -> Cost:
-    """Return the cost of what a search begins with, as a hint of what it may find."""
-    return cost_of(team, schedule(team, jobs, Decisions(_first_order(team, jobs))))
+def _limit(cost: Cost) -> float:
+    """Return a makespan beyond which nothing costs less."""
+    return cost[1] + _ALIKE if cost[0] <= 0.0 else inf
 
 
 def _only_ones(team: Team, jobs: Sequence[Job]) -> list[str]:
@@ -242,7 +253,14 @@ def robot_counts(team: Team, jobs: Sequence[Job]) -> list[Mapping[str, int]]:
         asked = [{name: count for name, count in choice if count} for choice in choices]
         return [each for each in asked if each]
     tries = _uniform_counts(most)[: max(room, _EFFORT // size)]
-    return sorted(tries, key=lambda each: first_cost(team.wanting(each), jobs))[:room]
+    costs: list[Cost] = []
+    for each in tries:
+        limit = _limit(sorted(costs)[room - 1]) if len(costs) >= room else inf
+        asking = team.wanting(each)
+        first = schedule(asking, jobs, Decisions(_first_order(asking, jobs)), limit=limit)
+        costs.append(cost_of(asking, first))
+    ranked = sorted(zip(costs, tries, strict=True), key=itemgetter(0))
+    return [each for _, each in ranked[:room]]
 
 
 def _size(team: Team, jobs: Sequence[Job]) -> int:

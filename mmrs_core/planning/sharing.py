@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import permutations
-from math import dist, inf
+from math import inf
 from typing import Protocol
 
+from mmrs_core.planning.capacities import Capacity
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sorties import Pilot
@@ -18,7 +20,7 @@ _CLOSE = 4e-3
 """Share of the time within which two ways of sharing out are alike."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ShareCandidate:
     """A robot that may take a share.
 
@@ -38,6 +40,11 @@ class ShareCandidate:
     backwards: Callable[[], Material | None]
     record: bool
     _runs: dict[int, PortionRun] = field(default_factory=dict)
+
+    @cached_property
+    def capacity(self) -> Capacity:
+        """Return how much work the robot can do by when."""
+        return Capacity(self.pilot, self.forwards, self.state, self.ready)
 
     def run(self, begin: int) -> PortionRun:
         """Return the robot's run from a portion on, made when it is first asked for."""
@@ -134,13 +141,8 @@ def _orders(candidates: Sequence[ShareCandidate]) -> list[tuple[ShareCandidate, 
     """Return orders worth a try: all of few robots, else by where along the work they are nearest."""
     if len(candidates) <= 2:
         return list(permutations(candidates))
-    along = tuple(sorted(candidates, key=_nearest_portion))
+    along = tuple(sorted(candidates, key=lambda each: each.forwards.nearest(each.state.at)))
     return [along, along[::-1]]
-
-
-def _nearest_portion(candidate: ShareCandidate) -> int:
-    here, material = candidate.state.at, candidate.forwards
-    return min(range(len(material)), key=lambda i: dist(here, material.first(i)))
 
 
 class RowFilling:
@@ -151,6 +153,7 @@ class RowFilling:
         self._order, self._everyone, self.alone = order, everyone, len(order) == 1
         self.begin = min(candidate.state.time for candidate in order)
         self.portions = len(order[0].forwards)
+        self._materials = list({id(each.forwards): each.forwards for each in order}.values())
 
     def shares(self, limit: float) -> list[Share]:
         """Return shares of all portions after which robots are back by a time; none if they cannot be."""
@@ -158,20 +161,40 @@ class RowFilling:
 
     def whole(self, limit: float, first: int, end: int) -> list[Share]:
         """Return shares of all portions from one to before another; none if they take longer."""
-        found = self.part(limit, first, end)
+        capacity = inf if self.alone else sum(each.capacity.until(limit) for each in self._order)
+        found = self._filled(limit, first, end, capacity)
         return found if found and found[-1].end == end - 1 else []
 
     def part(self, limit: float, first: int, end: int) -> list[Share]:
         """Return shares from one portion on, before another: as many as are done by a time."""
+        return self._filled(limit, first, end, inf)
+
+    def _filled(self, limit: float, first: int, end: int, capacity: float) -> list[Share]:
+        """Return the same; none as soon as what is left takes longer than the robots left have.
+
+        Args:
+            limit: by which all are back.
+            first: portion.
+            end: portion before which they end.
+            capacity: seconds of work that all of them can do by then.
+        """
         shares: list[Share] = []
         waiting = list(self._order)
         while first < end:
+            if capacity < self._least(first, end - 1, len(waiting)):
+                return []
             share = self._next_share(waiting, first, end, limit)
             if share is None:
                 break
             shares.append(share)
+            capacity -= share.candidate.capacity.until(limit) if capacity < inf else 0.0
             first = share.end + 1
         return [] if self._everyone and waiting else shares
+
+    def _least(self, first: int, last: int, robots: int) -> float:
+        """Return the fewest seconds of portions: who begins with one need not come from the one before."""
+        hops = max(0, robots - 1)
+        return min(each.seconds(first, last) - hops * each.longest_hop for each in self._materials)
 
     def _next_share(self, waiting: list[ShareCandidate], first: int, end: int, limit: float) -> Share | None:
         """Return the share of the first waiting robot that can begin there; it waits no longer."""

@@ -56,6 +56,7 @@ class Pilot:
         self.fresh = 0.0 if launches else self._noticing
         self.stopping = 0.0 if launches else self.kinematics.timing.reporting
         self.paces: dict[tuple[int, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
+        self._ends: dict[Position, float] = {}
         self._exits: dict[Position, Route | None] = {}
         self._descents: dict[Position, Route | None] = {}
         self._homes: dict[Position, Route | None] = {}
@@ -78,8 +79,30 @@ class Pilot:
         """Return how long that takes at most, or a diversion that it must be able to make; inf: it cannot."""
         return self._ending_longest(_remembered(self._exits, position, self.exit_route))
 
+    def slower_out(self, state: State, approach: ApproachRoute) -> float:
+        """Return by how much a route to work takes longer than its length at even speed; 0: none is."""
+        goal, travel = approach.via[0], self.travel
+        if state.away and state.at == goal:
+            return 0.0
+        try:
+            route = travel.go(state.at, goal) if state.away else travel.leave(goal)
+        except UnreachableError:
+            return 0.0
+        even = route.length / travel.bounds(approach.speed)[1].cruise
+        return max(0.0, travel.at_speed(route, approach.speed).seconds - even)
+
+    def slower_home(self, position: Position) -> float:
+        """Return likewise of the route on which the last sortie ends from a place."""
+        route = _remembered(self._exits, position, self.exit_route)
+        return 0.0 if route is None else max(0.0, route.seconds - route.length / self.kinematics.cruise)
+
     def end_seconds(self, position: Position) -> float:
         """Return the seconds from a place to the robot's end: down where it is, if it need not return."""
+        if position not in self._ends:
+            self._ends[position] = self._end_seconds(position)
+        return self._ends[position]
+
+    def _end_seconds(self, position: Position) -> float:
         if not self.homebound or self.robot.return_home:
             return self.exit_seconds(position)
         descent = _remembered(self._descents, position, self.travel.come_down)
@@ -115,7 +138,8 @@ class Pilot:
 
     def affords(self, state: State, seconds: float, end: Position) -> bool:
         """Return whether `seconds` at most that end at a place leave enough to end the last sortie there."""
-        return state.used + seconds + self.exit_longest(end) <= self.charge + _SAME
+        used = state.used + seconds
+        return used <= self.charge + _SAME and used + self.exit_longest(end) <= self.charge + _SAME
 
     def affords_home(self, state: State, seconds: float, end: Position) -> bool:
         """Return whether `seconds` at most that end at a place leave enough to return home."""

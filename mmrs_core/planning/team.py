@@ -22,6 +22,7 @@ from mmrs_core.planning.materials import (
 )
 from mmrs_core.planning.mixing import Mixture, WorkGroup
 from mmrs_core.planning.remainders import comparable
+from mmrs_core.planning.sharing import ShareCandidate
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
@@ -54,7 +55,8 @@ class Team:
         tasks: by name.
         kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
-        done: what has become of jobs in earlier schedules; see `schedule`.
+        candidates: for shares of tasks, by all that matters to them; see `schedule`.
+        done: what has become of jobs in earlier schedules, and where nothing has: by when; see `schedule`.
     """
 
     def __init__(
@@ -104,12 +106,14 @@ class Team:
         }
         self.kinds = _kinds_of(scene, self.pilots)
         self.starts = dict[tuple[str, float], State]()
-        self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
+        self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None, float]]()
+        self.candidates = dict[tuple[object, ...], ShareCandidate]()
         self._others: dict[tuple[object, ...], Team] = {}
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self._refusals = dict[tuple[str, str], str]()
         self._members = dict[tuple[str, ...], dict[str, tuple[str, ...]]]()
         self._whole = dict[str, bool]()
+        self._fewest = dict[str, float]()
         self.tasks = {task.name: task for task in scene.tasks}
         self._crews: dict[tuple[str, ...], tuple[tuple[str, ...], dict[str, str]]] = {}
         self._able_robots: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {}
@@ -249,6 +253,19 @@ class Team:
     def able_kinds(self, task: str) -> Mapping[str, str]:
         """Return, by kind, the first robot that can do a task."""
         return self._able_robots[task][1]
+
+    def fewest_seconds(self, task: str) -> float:
+        """Return seconds of work that robots of one sort take for a task at least; 0 where sorts mix."""
+        if task not in self._fewest:
+            materials = [self.forwards(task, name) for name in self.able_kinds(task).values()]
+            hops = self.sharers(task) - 1
+            known = [
+                each.seconds(0, len(each) - 1) - hops * each.longest_hop
+                for each in materials
+                if each is not None and not self.mixtures[task]
+            ]
+            self._fewest[task] = max(0.0, min(known, default=0.0))
+        return self._fewest[task]
 
     def sharers(self, task: str) -> int:
         """Return how many robots may share a task at most; 1 where it is indivisible."""

@@ -146,6 +146,7 @@ class Travel:
         self._leaving, self._returning = space.remembered.setdefault(own, ({}, {}))
         self._bounds: dict[float | None, tuple[Rates, Rates, Rates]] = {}
         self._uploaded: dict[float | None, Rates] = {}
+        self._at_speeds: dict[tuple[Route, float], Route] = {}
 
     def _within(self, height: float) -> float:
         lowest = max(self.kinematics.floor, self.robot.home[2])
@@ -233,6 +234,11 @@ class Travel:
         """Return the same route, its route gone at a commanded speed; None: at the robot's cruise."""
         if speed is None:
             return route
+        if (route, speed) not in self._at_speeds:
+            self._at_speeds[route, speed] = self._gone_at(route, speed)
+        return self._at_speeds[route, speed]
+
+    def _gone_at(self, route: Route, speed: float) -> Route:
         before, now = self.going(route.points), self.going(route.points, speed)
         shortest, expected, longest = (
             whole - a + b for whole, a, b in zip(route.bounds, before, now, strict=True)
