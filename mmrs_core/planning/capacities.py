@@ -1,7 +1,8 @@
 """How much work a robot can do by a time at most: a short look, before it is found out how much it can do.
 
 It is taken to go straight to the nearest portion, and straight home from the nearest one. Launch, climb,
-landing and stops count as on its routes to the first portion, and from the first and the last.
+landing and stops count as on its routes to the first portion, and from the first and the last. Were that
+ever too little, shares would be found that end later than they need, but none that a robot cannot do.
 """
 
 from __future__ import annotations

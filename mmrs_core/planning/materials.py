@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import ceil, floor, inf, sqrt
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.diversions import Diversions
-from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.pacing import paced_between
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import ApproachRoute
@@ -91,8 +91,16 @@ class Material:
         """Return the level distance to a place from where the nearest portion ends."""
         return _nearest_metres(self._lasts, place)
 
+    def fewest_seconds(self, robots: int, begin: int = 0, end: int = -1) -> float:
+        """Return the fewest seconds of work of portions that so many robots share.
+
+        Who begins with one need not come from the one before.
+        """
+        seconds = self.seconds(begin, end % len(self))
+        return max(0.0, seconds - max(0, robots - 1) * self._longest_hop)
+
     @cached_property
-    def longest_hop(self) -> float:
+    def _longest_hop(self) -> float:
         """Return the most seconds from the end of a portion to the beginning of the next."""
         return max((max(0.0, two[0] - one[1]) for one, two in pairwise(self.spans[1])), default=0.0)
 
@@ -170,7 +178,7 @@ def layout_of(work: Work, pilot: Pilot, robots: int, *, coarsest: float = 0.0, f
     if not work.divisible:
         return Layout((work.strokes,), can_turn=False)
     parts = [part for stroke in work.strokes for part in parts_of(stroke)]
-    seconds = [serve_seconds(part, pilot.robot, pilot.kinematics) for part in parts]
+    seconds = [pilot.serve_seconds(part) for part in parts]
     target = max(sum(seconds) / (_PORTIONS_PER_ROBOT * robots), coarsest)
     target = min(target, pilot.charge / _PORTIONS_PER_CHARGE)
     target = 0.0 if fine else target
@@ -206,20 +214,22 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
         task=task,
         rule=work.rule,
         portions=portions,
-        spans=tuple(_of_portions(portions, pilot, bound) for bound in (-1, 0, 1)),
+        spans=_spans(portions, pilot),
         entry=_entry(work, pilot),
         speeds=tuple(approach_speed(portion[0], pilot.kinematics) for portion in portions),
         whole=not work.divisible,
     )
 
 
-def _of_portions(
-    portions: Sequence[Sequence[Stroke]], pilot: Pilot, bound: int
-) -> tuple[tuple[float, float], ...]:
+def _spans(portions: Sequence[Sequence[Stroke]], pilot: Pilot) -> tuple[tuple[tuple[float, float], ...], ...]:
+    """Return by bound when each portion begins and ends."""
     parts = [part for portion in portions for part in portion]
-    spans = iter(paced(parts, pilot, bound))
-    own = [[next(spans) for _ in portion] for portion in portions]
-    return tuple((each[0][0], each[-1][1]) for each in own)
+    ends = list(accumulate(map(len, portions)))
+    runs = list(zip([0, *ends], ends, strict=False))
+    return tuple(
+        tuple((spans[begin][0], spans[end - 1][1]) for begin, end in runs)
+        for spans in paced_between(parts, pilot)
+    )
 
 
 def _entry(work: Work, pilot: Pilot) -> Position | None:

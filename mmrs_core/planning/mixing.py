@@ -19,6 +19,10 @@ from mmrs_core.scene import Work
 Runs: TypeAlias = tuple[tuple[int, int, int], ...]
 """(sort, first portion, last portion) of those who choose first, in their order."""
 
+_SURELY = 0.95
+"""Share of a work, as they do all of it, that robots of several sorts must be able to do by a time to be
+asked to: below 1, as one sort may do just those parts that take another one longer."""
+
 MIXES = 3
 """Mixes at most that are tried for one number of robots."""
 
@@ -168,9 +172,14 @@ class MixedFilling:
         self._mixture, self._groups, self._ahead, self._everyone = mixture, groups, ahead, everyone
         self.begin = min(each.state.time for _, group in groups for each in group)
         self._fillings: dict[tuple[int, Runs], list[RowFilling]] = {}
+        self._counts: dict[tuple[int, int], list[tuple[float, int]]] = {}
+        robots = [each for _, group in groups for each in group]
+        self._works = [(each.capacity, each.forwards.fewest_seconds(len(robots))) for each in robots]
 
     def shares(self, limit: float) -> list[Share]:
         """Return shares of all the work after which robots are back by a time; none if they cannot be."""
+        if sum(capacity.until(limit) / work if work else 1.0 for capacity, work in self._works) < _SURELY:
+            return []
         runs: Runs = ()
         found: list[Share] = []
         last = len(self._groups) - 1
@@ -210,13 +219,17 @@ class MixedFilling:
         count = filling.portions
         if self._ahead:
             return filling.part(limit, 0, most)
-        few, found = 0, list[Share]()
-        while few < most:
+        known = self._counts.setdefault((id(filling), most), [])
+        few, found = max((done for time, done in known if time <= limit), default=0), list[Share]()
+        most = min((done for time, done in known if time >= limit), default=most)
+        while few < most or (few and not found):
             middle = (few + most + 1) // 2
-            if mine := filling.whole(limit, count - middle, count):
-                few, found = middle, mine
+            mine = filling.whole(limit, count - middle, count)
+            if not mine:
+                few, most = min(few, middle - 1), middle - 1
             else:
-                most = middle - 1
+                few, found = middle, mine
+        known.append((limit, few))
         return found
 
     def _fillings_of(self, index: int, runs: Runs) -> list[RowFilling]:

@@ -20,7 +20,7 @@ from mmrs_core.planning.strokes import (
     uncertain_seconds,
 )
 from mmrs_core.scene import ActionAt, Position, Stroke
-from mmrs_core.scene.timing import acting
+from mmrs_core.scene.timing import MoveSeconds, acting
 
 SHORTEST_RUN = 3
 """Legs without a stop from which an autopilot may be given them as a mission."""
@@ -41,18 +41,25 @@ def paced(parts: Sequence[Stroke], pilot: Pilot, bound: int = 0) -> list[tuple[f
             done and its routes are fluid. Then the time is no more than any run takes. 1: it is as slow as
             it may be. 0: as expected.
     """
-    spans: list[tuple[float, float]] = []
-    now = 0.0
+    return paced_between(parts, pilot, (bound,))[0]
+
+
+def paced_between(
+    parts: Sequence[Stroke], pilot: Pilot, bounds: Sequence[int] = (-1, 0, 1)
+) -> tuple[list[tuple[float, float]], ...]:
+    """Return the same by bound; what all bounds have in common is found out once."""
+    found = tuple(list[tuple[float, float]]() for _ in bounds)
     here: Position | None = None
     for chain in _chains(parts):
-        if here is not None:
-            now += pilot.hop_seconds(here, chain[0])[1 + bound]
-        key = (bound, tuple(chain))
-        if (known := pilot.paces.get(key)) is None:
-            known = pilot.paces[key] = _of_chain(chain, pilot, bound)
-        spans += [(now + begin, now + end) for begin, end in known]
-        now, here = spans[-1][1], chain[-1].points[-1]
-    return spans
+        hop = MoveSeconds.exactly(0.0) if here is None else pilot.hop_seconds(here, chain[0])
+        known = pilot.paces.setdefault(tuple(chain), {})
+        for bound, spans in zip(bounds, found, strict=True):
+            if bound not in known:
+                known[bound] = _of_chain(chain, pilot, bound)
+            now = (spans[-1][1] if spans else 0.0) + hop[1 + bound]
+            spans += [(now + begin, now + end) for begin, end in known[bound]]
+        here = chain[-1].points[-1]
+    return found
 
 
 def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:

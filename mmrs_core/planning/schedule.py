@@ -19,6 +19,9 @@ from mmrs_core.scene import Task
 
 _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
 
+_MOST_CANDIDATES = 3000
+"""Candidates for shares, with what has been found out about them, that are kept for later schedules."""
+
 _MOST_ALONE = 8
 """Robots that are tried for work that one is to do: one that begins later may need fewer sorties."""
 
@@ -294,6 +297,8 @@ class _Scheduling:
             if known is None:
                 backwards = partial(self._team.backwards, job.name, name)
                 known = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
+                if len(self._team.candidates) >= _MOST_CANDIDATES:
+                    self._team.candidates.clear()
                 self._team.candidates[key] = known
             found.append((known.run(0).back(0), known))
         return [each for _, each in sorted(found, key=lambda pair: pair[0])]

@@ -254,12 +254,12 @@ def robot_counts(team: Team, jobs: Sequence[Job]) -> list[Mapping[str, int]]:
         return [each for each in asked if each]
     tries = _uniform_counts(most)[: max(room, _EFFORT // size)]
     costs: list[Cost] = []
-    for each in tries:
+    for each in reversed(tries):  # many robots, which are mostly better, come first
         limit = _limit(sorted(costs)[room - 1]) if len(costs) >= room else inf
         asking = team.wanting(each)
         first = schedule(asking, jobs, Decisions(_first_order(asking, jobs)), limit=limit)
         costs.append(cost_of(asking, first))
-    ranked = sorted(zip(costs, tries, strict=True), key=itemgetter(0))
+    ranked = sorted(zip(reversed(costs), tries, strict=True), key=itemgetter(0))
     return [each for _, each in ranked[:room]]
 
 

@@ -181,7 +181,8 @@ class RowFilling:
         shares: list[Share] = []
         waiting = list(self._order)
         while first < end:
-            if capacity < self._least(first, end - 1, len(waiting)):
+            robots = len(waiting)
+            if capacity < min(each.fewest_seconds(robots, first, end - 1) for each in self._materials):
                 return []
             share = self._next_share(waiting, first, end, limit)
             if share is None:
@@ -190,11 +191,6 @@ class RowFilling:
             capacity -= share.candidate.capacity.until(limit) if capacity < inf else 0.0
             first = share.end + 1
         return [] if self._everyone and waiting else shares
-
-    def _least(self, first: int, last: int, robots: int) -> float:
-        """Return the fewest seconds of portions: who begins with one need not come from the one before."""
-        hops = max(0, robots - 1)
-        return min(each.seconds(first, last) - hops * each.longest_hop for each in self._materials)
 
     def _next_share(self, waiting: list[ShareCandidate], first: int, end: int, limit: float) -> Share | None:
         """Return the share of the first waiting robot that can begin there; it waits no longer."""

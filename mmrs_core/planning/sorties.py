@@ -27,7 +27,7 @@ class Pilot:
     """Moves one robot's state on; each action is a short function of the state.
 
     Attributes:
-        paces: by (bound, parts in one go): when each begins and ends, see `paced`.
+        paces: by parts in one go and bound: when each begins and ends, see `paced`.
         charge: seconds that a charge allows.
         stuck: whether it cannot set out, for no charge suffices for a diversion from above home.
         fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
@@ -55,7 +55,8 @@ class Pilot:
         launches = self.kinematics.launches
         self.fresh = 0.0 if launches else self._noticing
         self.stopping = 0.0 if launches else self.kinematics.timing.reporting
-        self.paces: dict[tuple[int, tuple[Stroke, ...]], list[tuple[float, float]]] = {}
+        self.paces: dict[tuple[Stroke, ...], dict[int, list[tuple[float, float]]]] = {}
+        self._served: dict[Stroke, float] = {}
         self._ends: dict[Position, float] = {}
         self._exits: dict[Position, Route | None] = {}
         self._descents: dict[Position, Route | None] = {}
@@ -276,6 +277,12 @@ class Pilot:
 
     def _approach_speed(self, stroke: Stroke) -> float | None:
         return approach_speed(stroke, self.kinematics)
+
+    def serve_seconds(self, stroke: Stroke) -> float:
+        """Return how long the robot takes for a stroke; remembered, as rests of works are laid out again."""
+        if stroke not in self._served:
+            self._served[stroke] = serve_seconds(stroke, self.robot, self.kinematics)
+        return self._served[stroke]
 
     def serve(self, state: State, stroke: Stroke, task: str, rule: str, first: bool, last: bool) -> State:
         """Return the state after a stroke, whose first point the robot is at."""

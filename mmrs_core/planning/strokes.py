@@ -6,14 +6,17 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
+from operator import attrgetter
 
 from mmrs_core.scene import ActionAt, Kinematics, Position, Robot, RobotType, Stroke
 from mmrs_core.scene.timing import noticing
 
 _SAME = 1e-9
 
-_OF_A_WHOLE = ("look", "speed", "slow_down", "reversible")
+_OF_A_WHOLE = attrgetter("look", "speed", "slow_down", "reversible")
 """What the parts of a stroke have in common."""
+
+_REPEATED = attrgetter("every", "action", "device")
 
 NEAR = 1e-6
 """Metres within which a robot is at the same place."""
@@ -236,14 +239,14 @@ def joined(parts: Iterable[Stroke]) -> tuple[Stroke, ...]:
 
 def continues(one: Stroke, two: Stroke) -> bool:
     """Return whether one stroke continues another, so that both may be one."""
-    plain = one.hold == 0.0 and one.object is None
-    alike = all(getattr(one, name) == getattr(two, name) for name in _OF_A_WHOLE)
+    if one.points[-1] != two.points[0] or not len(one.points) > 1 < len(two.points):
+        return False
     a, b = one.repetition, two.repetition
-    if a is not None and b is not None:
-        alike = alike and a.after == b.before == 0.0 and a == replace(b, before=a.before, after=a.after)
-    else:
-        alike = alike and a is b
-    return plain and alike and one.points[-1] == two.points[0] and len(one.points) > 1 < len(two.points)
+    if a is not b and (a is None or b is None or _REPEATED(a) != _REPEATED(b)):
+        return False
+    if a is not None and b is not None and not a.after == b.before == 0.0:
+        return False
+    return one.hold == 0.0 and one.object is None and _OF_A_WHOLE(one) == _OF_A_WHOLE(two)
 
 
 def _put_together(one: Stroke, two: Stroke) -> Stroke:

@@ -258,13 +258,9 @@ class Team:
         """Return seconds of work that robots of one sort take for a task at least; 0 where sorts mix."""
         if task not in self._fewest:
             materials = [self.forwards(task, name) for name in self.able_kinds(task).values()]
-            hops = self.sharers(task) - 1
-            known = [
-                each.seconds(0, len(each) - 1) - hops * each.longest_hop
-                for each in materials
-                if each is not None and not self.mixtures[task]
-            ]
-            self._fewest[task] = max(0.0, min(known, default=0.0))
+            robots = self.sharers(task)
+            known = [each.fewest_seconds(robots) for each in materials if each is not None]
+            self._fewest[task] = 0.0 if self.mixtures[task] else min(known, default=0.0)
         return self._fewest[task]
 
     def sharers(self, task: str) -> int:

@@ -7,8 +7,10 @@ from plain_scenes import DRONE, box, field_work, robot, scene, with_kinematics
 from mmrs_core.planning.capacities import Capacity
 from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.obstacles import Obstacles
+from mmrs_core.planning.pacing import paced, paced_between
 from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
+from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import Ready
 from mmrs_core.planning.team import Team
 
@@ -85,3 +87,22 @@ def test_one_leg_is_blocked_by_what_blocks_it_among_many():
     together = obstacles.blocking(legs)
     assert 0 < together.any(axis=1).sum() < len(legs)
     assert all((obstacles.blocking(leg[None]) == row).all() for leg, row in zip(legs, together, strict=True))
+
+
+def test_parts_are_paced_for_all_bounds_as_for_each():
+    team = Team(field(1, areas=WALLS))
+    pilot, material = team.pilots["r0"], team.forwards("a", "r0")
+    parts = [part for portion in material.portions for part in portion]
+    apart = [paced(parts, Pilot(pilot.travel), bound) for bound in (-1, 0, 1)]
+    assert len(apart[1]) == len(parts) > 10
+    assert apart == list(paced_between(parts, Pilot(pilot.travel)))
+
+
+def test_candidates_for_shares_serve_the_next_schedule():
+    whole = field(2)
+    team, jobs = Team(whole), jobs_of(whole)
+    schedule(team, jobs, Decisions(("a",), {"a": 1}))
+    known = dict(team.candidates)
+    schedule(team, jobs, Decisions(("a",), {"a": 2}))
+    assert [each.pilot.robot.name for each in known.values()] == ["r0", "r1"]
+    assert team.candidates == known
