@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
-from mmrs_runtime.timing import IDEAL, LegTiming
+from mmrs_runtime.timing import IDEAL, LegTiming, reaching
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -242,18 +242,22 @@ class Rates:
         return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
 
     def overlap(self, before: Leg, after: Leg) -> float:
-        """Return for how many seconds a robot that passes the corner between two legs is on both at once.
+        """Return how many seconds a robot saves that passes the corner between two legs.
 
-        That is for as long as it brakes on the first and speeds up on the second, but it comes no further
-        from the corner than its radius: half of the turn is over when it is as far before as behind it.
+        That is for as long as it is on both at once: while it brakes on the first and speeds up on the
+        second, but it comes no further from the corner than its radius, and half of the turn is over when it
+        is as far before as behind it. One that slows down for the corner saves what it need not brake.
         """
+        if self.timing.turning:
+            return self.share * self._kept_up(before, after)
         both = min(self._phases(*before)[1], self._phases(*after)[0])
         return self.share * min(both, self._turning(before, after))
 
     def settling(self, start: Position, end: Position) -> float:
         """Return the seconds that a leg takes longer as it ends with a stop, which is not passed."""
         seconds, fastest = self._stopping(start, end)
-        return self.share * max(0.0, self._lag(seconds, start, end) + self.timing.settled(fastest, seconds))
+        lag = 0.0 if self.timing.turning else self._lag(seconds, start, end)
+        return self.share * max(0.0, lag + self.timing.settled(fastest, seconds))
 
     def eased(self, start: Position, end: Position, entering: float = 0.0) -> float:
         """Return the fewest seconds of a leg whose ends are passed.
@@ -304,7 +308,7 @@ class Rates:
         still = min(timing.still, speed)
         if speed <= timing.still:
             length -= min(length, timing.acceptance)
-        ends = [_reaching(still, limit, timing.jerk) for limit in (up, down)]
+        ends = [reaching(still, limit, timing.jerk) for limit in (up, down)]
         whole = length + sum(metres for _, metres in ends)
         seconds, _ = _stop_to_stop(whole, speed, up, down, timing.jerk)
         return max(0.0, seconds - sum(each for each, _ in ends))
@@ -372,17 +376,26 @@ class Rates:
         fastest = min(speed, _largest_speed(length, up, down, jerk))
         return (_speeding(fastest, up, jerk), _speeding(fastest, down, jerk))
 
+    def _kept_up(self, before: Leg, after: Leg) -> float:
+        """Return the seconds that a robot saves that slows down for a corner, rather than stops there."""
+        aside = _half_turn(before, after)
+        if aside is None:
+            return 0.0
+        speed, saved = self.timing.passing(aside), -self.timing.rounding(aside)
+        for leg, limit in ((before, self.timing.braking), (after, self.timing.acceleration)):
+            if fastest := self._stopping(*leg)[1]:
+                seconds, metres = reaching(min(speed, fastest), limit, self.timing.jerk)
+                saved += seconds - metres / fastest
+        return saved
+
     def _turning(self, before: Leg, after: Leg) -> float:
         """Return the seconds of a turn that comes as far from its corner as the radius at most.
 
         Half of it takes as long as the robot needs for its distance from the corner then, from a stop.
         """
-        one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
-        lengths = hypot(*one) * hypot(*two)
-        if lengths <= 0.0:
+        half = _half_turn(before, after)
+        if half is None:
             return 0.0
-        cosine = sum(p * q for p, q in zip(one, two, strict=True)) / lengths
-        half = sqrt(max(0.0, 1.0 - cosine) / 2.0)
         if half <= STRAIGHT or self.timing.corner_radius == inf:
             return inf
         apart = self.timing.corner_radius / (2.0 * half)
@@ -399,6 +412,15 @@ class Rates:
             steep = length / abs(rise) * upright
             up, down = (min(each * length / level, steep) if level > 0.0 else steep for each in (up, down))
         return length, length / even if even > 0.0 else inf, up, down
+
+
+def _half_turn(before: Leg, after: Leg) -> float | None:
+    """Return the sine of half the turn between two legs; None where one has no length."""
+    one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
+    lengths = hypot(*one) * hypot(*two)
+    if lengths <= 0.0:
+        return None
+    return sqrt(max(0.0, 1.0 - sum(p * q for p, q in zip(one, two, strict=True)) / lengths) / 2.0)
 
 
 def _along(start: Position, end: Position, push: Push | None) -> float:
@@ -422,18 +444,6 @@ def _speeding(speed: float, acceleration: float, jerk: float) -> float:
     if speed * jerk >= acceleration * acceleration:
         return speed / acceleration + acceleration / jerk
     return 2.0 * sqrt(speed / jerk)
-
-
-def _reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, float]:
-    """Return the seconds and metres in which a robot that speeds up from a stop first is so fast."""
-    if acceleration == inf:
-        return 0.0, 0.0
-    bend = acceleration / jerk if jerk < inf else 0.0
-    if bend > 0.0 and 2.0 * speed <= acceleration * bend:
-        seconds = sqrt(2.0 * speed / jerk)
-        return seconds, speed * seconds / 3.0
-    seconds = speed / acceleration + bend / 2.0
-    return seconds, speed * speed / (2.0 * acceleration) + acceleration * bend * bend / 24.0
 
 
 def _covering(metres: float, acceleration: float, jerk: float) -> float:

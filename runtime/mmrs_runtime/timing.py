@@ -27,6 +27,9 @@ class LegTiming:
         speed: largest that it makes, metres per second.
         climb, descent: largest that it makes, metres per second.
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
+        turning: acceleration to the side, metres per second squared, that it slows down for where it passes a
+            corner; 0: it begins the next leg before the end of the last one.
+        cornering: seconds that it takes then to turn right round (see `rounding`).
         acceptance: metres from a target at which it may count as reached: so short a leg may take no time,
             and another one may be so much longer that begins there; so much shorter, too, without `still`.
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
@@ -67,6 +70,8 @@ class LegTiming:
     climb: float = inf
     descent: float = inf
     corner_radius: float = inf
+    turning: float = 0.0
+    cornering: float = 0.0
     acceptance: float = 0.0
     still: float = 0.0
     settling: float = 0.0
@@ -122,12 +127,39 @@ class LegTiming:
         away = 2.0 * sqrt(2.0 * max(0.0, beyond - self.acceptance) * self.trailing / self.returning)
         return min(still, near + away + self.waiting)
 
+    def passing(self, aside: float) -> float:
+        """Return the speed at which it passes a corner that it slows down for, metres per second.
+
+        It goes on a circle that touches both legs as far from the corner as its radius.
+
+        Args:
+            aside: sine of half the turn.
+        """
+        ahead = sqrt(max(0.0, 1.0 - aside * aside))
+        return sqrt(self.turning * self.corner_radius * ahead / aside) if aside > 0.0 else inf
+
+    def rounding(self, aside: float) -> float:
+        """Return the seconds that it keeps the speed of a corner for; `aside`: sine of half the turn."""
+        return float(self.cornering * aside**1.5)
+
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.
 
         At a steady acceleration that is v² / 2a, and never more than the radius.
         """
         return min(self.corner_radius, speed * speed / (2.0 * min(self.acceleration, self.braking)))
+
+
+def reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, float]:
+    """Return the seconds and metres in which a robot that speeds up from a stop first is so fast."""
+    if acceleration == inf:
+        return 0.0, 0.0
+    bend = acceleration / jerk if jerk < inf else 0.0
+    if bend > 0.0 and 2.0 * speed <= acceleration * bend:
+        seconds = sqrt(2.0 * speed / jerk)
+        return seconds, speed * seconds / 3.0
+    seconds = speed / acceleration + bend / 2.0
+    return seconds, speed * speed / (2.0 * acceleration) + acceleration * bend * bend / 24.0
 
 
 IDEAL = LegTiming()

@@ -369,9 +369,27 @@ FIELDS = tuple(
     Flight(f"copter: {name}", routes(Route("Alba", COPTER, (*FIELD, (0.0, 0.0, 12.0)), 5.0)), way=way)
     for name, way in (("ten minutes", RUN), ("ten minutes in AUTO", PLAN))
 )
+STRIPS = tuple(
+    (15.0 * row, 45.0 + 30.0 * step * (1 - 2 * (row % 2)), 12.0) for row in range(4) for step in (-1, 0, 1)
+)
+"""Turns by a right angle at the ends of strips, and places between, that are passed."""
+
+STRIPES = tuple(
+    Flight(
+        f"copter: {name}",
+        routes(Route("Alba", COPTER, (*STRIPS, (0.0, 0.0, 12.0)), speed, fluid=True)),
+        way=way,
+    )
+    for name, speed, way in (
+        ("strips", 5.0, RUN),
+        ("strips in AUTO", 5.0, PLAN),
+        ("quick strips in AUTO", 9.0, PLAN),
+    )
+)
+
 _COPTERS = {
     flight.name.removeprefix("copter: "): flight
-    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER), *AREAS, *FIELDS)
+    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER), *AREAS, *FIELDS, *STRIPES)
 }
 PX4S = (
     *(
@@ -380,7 +398,7 @@ PX4S = (
             *("legs", "fluid", "plan in AUTO", "turns", "two sorties", "area to fence"),
             *("hold, then resume", "order return", "order stop", "order land"),
             *("link cut for 40 s", "process killed"),
-            *("ten minutes", "ten minutes in AUTO"),
+            *("ten minutes", "ten minutes in AUTO", "strips", "strips in AUTO", "quick strips in AUTO"),
         )
     ),
     _as_px4(_COPTERS["photos in passing"], parameters={"TRIG_MODE": 4.0}),

@@ -1,7 +1,8 @@
 """Motion of a simulated vehicle: a point that takes legs as autopilots do.
 
 On missions and returns a leg is an S-curve of limited jerk (``SCurve.cpp``), and a corner that is passed is
-the sum of two. A target outside a mission is approached as ``shape_pos_vel_accel`` does (``control.cpp``).
+the sum of two; a PX4 slows down for it. A target outside a mission is approached as ``shape_pos_vel_accel``
+does (``control.cpp``).
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
-from mmrs_runtime.timing import LegTiming
+from mmrs_runtime.timing import LegTiming, reaching
 
 Vector = tuple[float, float, float]
 
@@ -37,10 +38,11 @@ STILL: Vector = (0.0, 0.0, 0.0)
 
 @dataclass(slots=True)
 class CurvedLeg:
-    """A straight leg from a stop to a stop.
+    """A straight leg, as a part of one from a stop to a stop.
 
     Attributes:
-        path: from its start to its end, metres. length: of it.
+        path: from its start to its end, metres. length: of the whole one.
+        before, after: what is left out at its ends, which it passes at a speed: seconds and metres.
         elapsed: seconds since its start; less than 0: it begins later.
         duration: seconds until its end. ramp: seconds to its full speed.
         lacks: share of the thrust against the drag of its hull that it lacks at its start.
@@ -55,6 +57,8 @@ class CurvedLeg:
     duration: float = 0.0
     ramp: float = 0.0
     lacks: float = 0.0
+    before: tuple[float, float] = (0.0, 0.0)
+    after: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         if self.length < self.speed * self._ramp_to(self.speed):
@@ -70,7 +74,14 @@ class CurvedLeg:
     @property
     def left(self) -> float:
         """Return the seconds that are left."""
-        return max(0.0, self.duration - self.elapsed)
+        return max(0.0, self.duration - self.after[0] - self.elapsed)
+
+    @property
+    def now(self) -> tuple[float, float]:
+        """Return the share of its path that is behind it, and of which it makes so much more per second."""
+        distance, speed = self.at(max(self.before[0], self.elapsed))
+        length = self.length - self.before[1] - self.after[1]
+        return (distance - self.before[1]) / length, speed / length
 
     @property
     def slows(self) -> bool:
@@ -140,6 +151,9 @@ class Body:
     """Where the first of its legs begins."""
     _goal: Vector | None = None
     """Where the last of its legs ends."""
+    _passing: tuple[float, float] | None = None
+    """Speed at which it has passed the end of its last leg, and seconds for which it keeps that; None: it has
+    not."""
     _push: Vector = STILL
     """Share of the thrust against its drag at the commanded speed that it has built up on its last leg."""
 
@@ -171,26 +185,30 @@ class Body:
         self.position = (self.position[0], self.position[1], up)
         self.velocity = self._acceleration = STILL
         self.target = self.onward = self.driven = None
-        self._legs.clear()
+        self.plan_anew()
 
     def passes_target(self) -> bool:
         """Return whether it has passed half of the turn to the next leg."""
         turns = len(self._legs) > 1 and self._goal == self.onward
-        return turns and self._legs[-1].elapsed >= self._legs[-2].left
+        passed = self._passing is not None and self._goal == self.target
+        return passed or (turns and self._legs[-1].elapsed >= self._legs[-2].left)
 
     def change_speed(self, speed: float) -> None:
         """Move at another speed, on the last leg that it has begun, too, unless that slows down."""
         self.speed = speed
         if self._legs and self._goal is not None and not self._legs[-1].slows:
             begun = self._legs[-1]
-            distance, _ = begun.at(begun.elapsed)
+            distance = begun.at(begun.elapsed)[0] - begun.before[1]
             leg = self._leg(plus(self._goal, begun.path, -1.0), self._goal)
-            leg.elapsed = _bisected(0.0, leg.duration, lambda seconds: leg.at(seconds)[0] < distance)
+            leg.elapsed = _bisected(
+                0.0, leg.duration, lambda seconds: leg.at(seconds)[0] - leg.before[1] < distance
+            )
             self._legs[-1] = leg
 
     def plan_anew(self) -> None:
         """Begin the leg to its target once more, from a stop."""
         self._legs.clear()
+        self._passing = None
 
     def _follow_legs(self, target: Vector, step: float) -> bool:
         """Move along S-curves to a target; return whether it does."""
@@ -199,23 +217,26 @@ class Body:
                 self.velocity = self._acceleration = STILL
                 self.rested = max(0.0, self.rested) + step
                 return True
-            if self.pace > STANDING:
+            if self.pace > STANDING and self._passing is None:
                 return False
-            self._legs, self._start, self._goal = [self._leg(self.position, target)], self.position, target
-            self._legs[0].elapsed = -self.figures.starting - self._pivoting(target)
+            leg, self._start, self._goal = self._leg(self.position, target), self.position, target
+            leg.elapsed -= self.figures.starting + self._pivoting(target) if self._passing is None else 0.0
+            self._legs, self._passing = [leg], None
         self._begin_turn(target)
         rate = 1.0 / (1.0 + max(map(self._slowness, self._legs)))
         for leg in self._legs:
             leg.elapsed += step * rate
         self.rested = -self._legs[-1].left
         while self._legs and self._legs[0].left <= 0.0:
-            self._push = self._pushed(self._legs[0])
-            self._start = plus(self._start, self._legs.pop(0).path, 1.0)
+            leg = self._legs.pop(0)
+            self._push, self._start = self._pushed(leg), plus(self._start, leg.path, 1.0)
+            if leg.after[0] > 0.0:
+                self._passing = self._corner(leg.path)
         position, self.velocity, self._acceleration = self._start, STILL, STILL
         for leg in self._legs:
-            distance, speed = leg.at(leg.elapsed)
-            position = plus(position, leg.path, distance / leg.length)
-            self.velocity = plus(self.velocity, leg.path, rate * speed / leg.length)
+            share, pace = leg.now
+            position = plus(position, leg.path, share)
+            self.velocity = plus(self.velocity, leg.path, rate * pace)
         self.position = position
         return True
 
@@ -226,6 +247,18 @@ class Body:
         self.wanted_heading = course(self.position, target)
         left = abs(turned(self.heading, self.wanted_heading))
         return left / self.turn_rate if left > self.pivots else 0.0
+
+    def _corner(self, path: Vector) -> tuple[float, float] | None:
+        """Return at which speed it passes the end of a leg that it slows down for; None: it stops there.
+
+        Returns:
+            Speed, and seconds for which it keeps that.
+        """
+        if not self.figures.turning or self.onward is None or self.target is None:
+            return None
+        aside = abs(turned(course(STILL, path), course(self.target, self.onward)))
+        half = sin(radians(aside / 2.0))
+        return self.figures.passing(half), self.figures.rounding(half)
 
     def _slowness(self, leg: CurvedLeg) -> float:
         """Return how much longer a second of a leg takes, whose curve waits while thrust is built up."""
@@ -243,7 +276,9 @@ class Body:
 
     def _drag(self, leg: CurvedLeg) -> float:
         """Return the largest drag on a leg as a share of that at the commanded speed."""
-        return (leg.speed * hypot(*leg.path[:2]) / leg.length / min(self.speed, self.figures.speed)) ** 2
+        return (
+            leg.speed * hypot(*leg.path[:2]) / hypot(*leg.path) / min(self.speed, self.figures.speed)
+        ) ** 2
 
     def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
         path = plus(end, start, -1.0)
@@ -254,7 +289,14 @@ class Body:
             steep = length / abs(path[2])
             speed = min(speed, steep * self._rate(path[2]))
             acceleration = min(acceleration, steep * (figures.vertical_acceleration or inf))
-        leg = CurvedLeg(path, length, speed, acceleration, figures.jerk)
+        corner = self._corner(path) if end == self.target else None
+        ends = [
+            reaching(min(passed[0], speed), acceleration, figures.jerk) if passed else (0.0, 0.0)
+            for passed in (self._passing, corner)
+        ]
+        whole = length + ends[0][1] + ends[1][1]
+        begins = ends[0][0] - (self._passing[1] if self._passing else 0.0)
+        leg = CurvedLeg(path, whole, speed, acceleration, figures.jerk, begins, before=ends[0], after=ends[1])
         if figures.lag and path[:2] != (0.0, 0.0):
             leg.lacks = max(0.0, 1.0 - self._drag(leg) * _along(leg, self._push))
         return leg
@@ -266,7 +308,7 @@ class Body:
     def _begin_turn(self, target: Vector) -> None:
         """Begin the next leg where the middle of the turn is within the radius of the corner."""
         leg = self._legs[-1]
-        if self.onward is None or self._goal != target or not leg.slows:
+        if self.figures.turning or self.onward is None or self._goal != target or not leg.slows:
             return
         following, half = self._leg(target, self.onward), leg.left / 2.0
         before, after = leg.length - leg.at(leg.elapsed + half)[0], following.at(half)[0]
@@ -277,7 +319,7 @@ class Body:
 
     def _approach(self, target: Vector | None, step: float) -> None:
         """Approach a target, or brake, with limited acceleration and jerk."""
-        self._legs.clear()
+        self.plan_anew()
         figures = self.figures
         if figures.trailing:
             self._trail(target or self.position, step)
@@ -320,7 +362,7 @@ class Body:
 
     def _drive(self, ahead: float, aside: float, up: float, turn: float, step: float) -> None:
         """Approach commanded speeds."""
-        self._legs.clear()
+        self.plan_anew()
         self.heading = (self.heading + turn * step) % 360.0
         north, east = cos(radians(self.heading)), sin(radians(self.heading))
         wanted = (ahead * north - aside * east, ahead * east + aside * north, up)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import dist
+from math import cos, dist, radians, sin
 
 import pytest
 from counts import many
@@ -274,6 +274,24 @@ def test_a_leg_of_a_px4_is_expected_to_take_what_was_measured(speed, metres, mea
     assert level_leg(rates, metres) == pytest.approx((least + most) / 2.0, rel=0.08)
     assert level_leg(rates.soonest(), metres) < least
     assert level_leg(rates.latest(), metres) > most
+
+
+@pytest.mark.parametrize(
+    ("speed", "degrees", "measured"),
+    [(5.0, 45.0, 8.0), (5.0, 90.0, 9.5), (5.0, 135.0, 10.5), (9.0, 20.0, 5.2), (9.0, 135.0, 9.4)],
+)
+def test_a_px4_that_passes_corners_on_a_mission_takes_what_was_measured(speed, degrees, measured):
+    """Nine legs of 30 m each, between turns to the right and to the left; their mean."""
+    figures = PX4_MULTICOPTER.pacing.mission
+    assert figures is not None
+    rates = Rates(speed, figures.climb, figures.descent, figures)
+    here, corner = (0.0, 0.0, 0.0), (0.0, 30.0, 0.0)
+    aside = radians(degrees)
+    beyond = (30.0 * sin(aside), 30.0 + 30.0 * cos(aside), 0.0)
+    leg, after = (here, corner), (corner, beyond)
+    push = rates.push(*leg, (0.5 * sin(aside), 0.5 * cos(aside)))
+    seconds = rates.from_stop_to_stop(*after, push=push) - rates.settling(*after) - rates.overlap(leg, after)
+    assert seconds == pytest.approx(measured, rel=0.1)
 
 
 def test_a_px4_lands_as_long_as_was_measured_and_within_the_bounds_of_launch_and_landing():
