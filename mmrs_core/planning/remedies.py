@@ -245,7 +245,7 @@ def for_times(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, 
 
     Args:
         team: of the scene.
-        jobs: of which is told when each would end as the only task.
+        jobs: which show when each would end as the only task.
         spans: by task: when it begins and ends.
     """
     single = {job.name: replace(job, after=()) for job in jobs if job.choice is None}

@@ -130,7 +130,7 @@ class LegTiming:
     def passing(self, aside: float) -> float:
         """Return the speed at which it passes a corner that it slows down for, metres per second.
 
-        It goes on a circle that touches both legs as far from the corner as its radius.
+        It takes a circle that touches both legs as far from the corner as its radius.
 
         Args:
             aside: sine of half the turn.

@@ -249,7 +249,7 @@ class ManualRobot(Vehicle):
         """Return what the vehicle has told last."""
         if not self._ready:
             return {}
-        return status_of(self._told(self._live.clock.now()))
+        return status_of(self._reported(self._live.clock.now()))
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box."""
@@ -291,7 +291,7 @@ class ManualRobot(Vehicle):
             changed = before != (self._troubles.event, self._steering.reached)
             if self._box is not None and now - self._fixed >= FIX_SECONDS:
                 self._fixed = now
-                fix(self._box, self._told(now))
+                fix(self._box, self._reported(now))
         if changed:
             self._live.wake()
 
@@ -382,7 +382,7 @@ class ManualRobot(Vehicle):
         self._instead = instead
         self._lost = self._autopilot.rising = True
 
-    def _told(self, now: float) -> State:
+    def _reported(self, now: float) -> State:
         """Return what the vehicle tells, as black boxes and people have it: places count from its home."""
         steering, (east, north, _) = self._steering, self._ways.home
         place = Local(steering.north - north, steering.east - east, -steering.depth)
