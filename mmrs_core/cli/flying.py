@@ -121,7 +121,7 @@ def carry_out(session: Session, loaded: Loaded, wanted: RunOptions) -> Result:
             links=links,
             resumed=resumed,
             patience=wanted.patience,
-            meet=begin_all(bus, program.executable, _unbegun(here, resumed), wanted.bus.sync, tell),
+            meet=begin_all(bus, program.executable, here, resumed, wanted.bus.sync, tell),
             observe=_telling(recorder.record, program),
             sync=writer.sync,
             say=tell,
@@ -160,11 +160,6 @@ def _telling(observe: Callable[[StepRecord], None], program: Program) -> Callabl
             tell(f"{clock(record.time)} '{record.robot}': {move.kind} '{move.id}'{serves}")
 
     return observe_and_print
-
-
-def _unbegun(robots: tuple[str, ...], resumed: tuple[StepRecord, ...]) -> list[str]:
-    begun = {record.robot for record in resumed}
-    return [robot for robot in robots if robot not in begun]
 
 
 class StepRecorder:

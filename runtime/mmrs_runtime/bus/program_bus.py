@@ -181,6 +181,7 @@ def begin_all(
     bus: Slots,
     program: Program,
     robots: Iterable[str],
+    resumed: Sequence[StepRecord],
     patience: float | None,
     say: Callable[[str], None],
 ) -> Callable[[Callable[[], None]], Mapping[str, str]]:
@@ -190,11 +191,13 @@ def begin_all(
     began. It raises `Incomplete` where not all have come in time.
 
     Args:
-        robots: of this process, that begin for the first time.
+        robots: of this process.
+        resumed: the steps that they made before; who made any has begun already.
         patience: real seconds to wait; None skips the wait.
         say: reports to the operator which robots are awaited, and how accurately all began.
     """
-    here = tuple(robots)
+    begun = {record.robot for record in resumed}
+    here = tuple(robot for robot in robots if robot not in begun)
 
     def begin(look: Callable[[], None]) -> Mapping[str, str]:
         if patience is None or not here or not isinstance(bus, ProgramBus):

@@ -80,7 +80,7 @@ def run_controllers(
             folder=options.log,
             resumed=resumed,
             patience=options.battery_patience * options.clock.speedup,
-            meet=begin_all(bus, program, _unbegun(ids, resumed), options.sync, say),
+            meet=begin_all(bus, program, ids, resumed, options.sync, say),
             observe=_telling(writer, robots),
             sync=writer.sync,
             say=say,
@@ -176,11 +176,6 @@ def _resumed(robots: Sequence[Robot], options: Options) -> tuple[StepRecord, ...
     if not options.resume:
         return ()
     return tuple(chain.from_iterable(read(options.log / robot.log) for robot in robots))
-
-
-def _unbegun(robots: Sequence[str], resumed: Sequence[StepRecord]) -> list[str]:
-    begun = {record.robot for record in resumed}
-    return [robot for robot in robots if robot not in begun]
 
 
 def _slots(
