@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from math import dist, inf, nan
@@ -170,19 +170,16 @@ def _waiting(team: Team, traffic: Traffic, conflict: Conflict) -> Iterator[Traff
             waits = traffic.waits(name, at_home=at_home)
             if waits is None:
                 break
-            other = allowed(team, traffic, delayed(team.scene, traffic.plan, name, waits))
-            if other is not None:
-                yield other
+            plan = delayed(team.scene, traffic.plan, name, waits)
+            if allowed(team, traffic, plan):
+                yield traffic.with_plan(plan)
                 break
 
 
-def allowed(team: Team, before: Traffic, plan: Plan) -> Traffic | None:
-    """Return the traffic of a plan that keeps times and charges; None if it does not."""
+def allowed(team: Team, before: Traffic, plan: Plan) -> bool:
+    """Return whether a plan keeps times, and charges too of those robots that wait longer than before."""
     spans = {task: (begin, plan.ends[task]) for task, begin in plan.begins.items()}
-    if broken_times(team, spans):
-        return None
-    other = before.with_plan(plan)
-    return None if other.overdrawn(before.plan) else other
+    return not broken_times(team, spans) and not before.overdrawn_in(plan)
 
 
 class Traffic:
@@ -219,28 +216,33 @@ class Traffic:
         self._names = tuple(each.robot for each in plan.robots)
         self._timelines: Mapping[str, Timeline] = {}
         self._pieces: Mapping[str, Pieces] = {}
+        self._delays: dict[str, list[tuple[DelayedStep, bool]]] = {}
         self._meetings: Mapping[tuple[str, str], tuple[Indices, Indices]] = {}
         self.conflicts: Mapping[tuple[str, str], Conflict] = {}
-        self._update(frozenset(self._names))
+        self._update(frozenset(self._names), self._names)
 
-    def with_plan(self, plan: Plan) -> Traffic:
-        """Return the traffic of a plan in which some robots do the same at other times."""
-        before = {each.robot: each.steps for each in self.plan.robots}
+    def with_plan(self, plan: Plan, names: Collection[str] | None = None) -> Traffic:
+        """Return the traffic of a plan in which some robots do the same at other times.
+
+        Args:
+            plan: of all robots.
+            names: of those of which is found where they meet; None: all.
+        """
         other = copy(self)
         other.plan = plan
-        other._update(frozenset(each.robot for each in plan.robots if each.steps != before[each.robot]))
+        other._update(self._changed_in(plan), self._names if names is None else names)
         return other
 
-    def _update(self, changed: frozenset[str]) -> None:
-        """Find where those who have changed come too near to others."""
-        self._timelines = self._timing.of(self.plan)
+    def _update(self, changed: frozenset[str], names: Collection[str]) -> None:
+        """Find where those of some robots who have changed come too near to others of them."""
+        self._timelines, self._delays = self._timing.of(self.plan), {}
         fresh = {
             name: pieces_of(self._timelines[name].rides, number)
             for number, name in enumerate(self._names)
-            if name in changed
+            if name in changed and name in names
         }
         self._pieces = {**self._pieces, **fresh}
-        proximity = self._proximity([self._pieces[name] for name in self._names])
+        proximity = self._proximity([self._pieces[name] for name in self._names if name in names])
         moved = np.array([name in changed for name in self._names])[proximity.pieces.owners]
         i, j = self._unordered(proximity.pieces, *proximity.meetings(_SPARE, moved))
         found = {names: (meeting, conflict) for names, meeting, conflict in self._met(proximity, i, j)}
@@ -307,11 +309,13 @@ class Traffic:
         """Return what a robot does."""
         return next(each.steps for each in self.plan.robots if each.robot == name)
 
-    def overdrawn(self, before: Plan) -> set[str]:
-        """Return the robots that wait longer than before and then take more than a charge allows."""
-        old = {each.robot: each.steps for each in before.robots}
-        changed = {each.robot for each in self.plan.robots if each.steps != old[each.robot]}
-        return set() if self._charges is None else self._charges.short(self.plan, changed)
+    def overdrawn_in(self, plan: Plan) -> set[str]:
+        """Return the robots that wait longer in another plan and then take more than a charge allows."""
+        return set() if self._charges is None else self._charges.short(plan, self._changed_in(plan))
+
+    def _changed_in(self, plan: Plan) -> frozenset[str]:
+        before = {each.robot: each.steps for each in self.plan.robots}
+        return frozenset(each.robot for each in plan.robots if each.steps != before[each.robot])
 
     def later_starts(self) -> dict[str, float]:
         """Return when robots must leave home at the earliest to keep apart; empty if that does not help.
@@ -386,6 +390,16 @@ class Traffic:
             at_home: whether it can wait at home only.
             last: the step up to which it must keep apart; None: to the end.
         """
+        if name not in self._delays:
+            self._delays[name] = list(self._delayed_steps(name))
+        delays = [
+            replace(step, may_wait=step.may_wait and (is_home or not at_home))
+            for step, is_home in self._delays[name]
+        ]
+        return waits_before(delays if last is None else delays[: last + 1])
+
+    def _delayed_steps(self, name: str) -> Iterator[tuple[DelayedStep, bool]]:
+        """Yield what limits the delay of each step of a robot, and whether it begins at its home."""
         number, timeline = self._names.index(name), self._timelines[name]
         stops = pieces_of(timeline.stops, number)
         parts = [self._pieces[other] for other in self._names if other != name]
@@ -397,19 +411,16 @@ class Traffic:
         standing = j >= count - len(stops)
         steps = proximity.pieces.steps[j]
         plan = self.steps(name)
-        found = []
         for index, stop in enumerate(timeline.stops):
             step = plan[index] if index < len(plan) else None
             here = steps == index
-            found.append(
-                DelayedStep(
-                    _united(begins, ends, here & ~standing),
-                    _united(begins, ends, here & standing),
-                    may_wait(step) and (not at_home or stop.relation is HomeRelation.HOME),
-                    step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
-                )
+            delayed_step = DelayedStep(
+                _united(begins, ends, here & ~standing),
+                _united(begins, ends, here & standing),
+                may_wait(step),
+                step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
             )
-        return waits_before(found if last is None else found[: last + 1])
+            yield delayed_step, stop.relation is HomeRelation.HOME
 
 
 def _leaves(steps: Sequence[Step]) -> float:

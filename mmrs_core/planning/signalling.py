@@ -113,10 +113,10 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic
         ask(number, may=None)
     while waiting:
         _, number, plan, halved = heappop(waiting)
-        pair, other = offers[number][0], allowed(team, traffic, plan)
-        if other is not None and _progress(other, *pair, halved) > before[pair]:
-            return other
-        ask(number, may=other is not None)
+        pair, may = offers[number][0], allowed(team, traffic, plan)
+        if may and _progress(traffic.with_plan(plan, pair), *pair, halved) > before[pair]:
+            return traffic.with_plan(plan)
+        ask(number, may=may)
     return None
 
 
