@@ -18,8 +18,6 @@ from whole_files import ByGroup, InWorkers
 
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
 THOROUGH = "thorough"
-ALIVE = 50_000
-"""More objects than this are made before Python looks for cycles; by default it looks too often for tests."""
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 
@@ -36,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
         keep_bytecode_elsewhere(config)
     if not AT_WORK_WITH_OTHERS:
         config.add_cleanup(shared.open_folder())
-    gc.set_threshold(ALIVE, 20, 20)
+    gc.set_threshold(*shared.SELDOM)
     obey_interrupts()
     same_examples.pytest_configure()
     take_examples_by_profile(config)

@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 _VARIABLE = "MMRS_TEST_RUN"
+SELDOM = (50_000, 20, 20)
+"""New objects after which Python looks for cycles; by default, that is a twentieth of the time of tests."""
 
 
 def open_folder() -> Callable[[], None]:

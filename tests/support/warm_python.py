@@ -298,4 +298,5 @@ if __name__ == "__main__":
     sys.path.remove(str(Path(__file__).parent))
     import_everything()
     gc.freeze()
+    gc.set_threshold(*shared.SELDOM)
     become(*Server(socket.socket(fileno=int(sys.argv[1]))).serve())

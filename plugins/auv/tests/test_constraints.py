@@ -42,11 +42,6 @@ def mixed(registry):
     return vehicle(registry, held, movementCapabilities=[movement(registry, held), plain])
 
 
-def twice(registry):
-    held = thruster(registry)
-    return vehicle(registry, held, movementCapabilities=[movement(registry, held, held)])
-
-
 def sharing(registry):
     """Return two vehicles; the second moves by the thruster of the first."""
     lender = vehicle(registry)
