@@ -74,7 +74,8 @@ class Memory(NamedTuple):
 
     Attributes:
         blocks: by area, whether it blocks.
-        seen_from, seen: by node, where what it sees begins, and how many nodes; UNKNOWN: not looked yet.
+        seen_from, seen: by node, and after all nodes by place where paths begin or end, where what it sees
+            begins, and how many nodes; UNKNOWN: not looked yet.
         node, metres: what is seen: nodes, and how far away.
         used: (1,) how many of these there are.
         met: by area, the number of the look that met it last; the last item counts looks.
@@ -109,6 +110,8 @@ def search(
     goal_y: float,
     longest: float,
     spare: float,
+    begin: int,
+    end: int,
 ) -> float:
     """Return the metres of the shortest path, left in the memory; NONE or FULL where there is none.
 
@@ -118,6 +121,7 @@ def search(
         start_x, start_y, goal_x, goal_y: ends of the path.
         longest: metres beyond which a path is of no use.
         spare: metres to keep on top of clearances.
+        begin, end: where it is kept what is seen from the ends of the path.
     """
     best, came = memory.best, memory.came
     goal = len(best) - 1
@@ -134,13 +138,17 @@ def search(
     if _clear(c, memory, areas, start_x, start_y, goal_x, goal_y, spare):
         best[goal], came[goal] = straight, START
         return straight
+    if _is_full(c, memory, goal_x, goal_y, -1, spare, end):
+        return FULL
+    if _is_full(c, memory, start_x, start_y, -1, spare, begin):
+        return FULL
     to_goal = {-2: 0.0}
-    for i in range(_look(c, memory, goal_x, goal_y, -1, spare)):
-        to_goal[memory.look_node[i] ^ 1] = memory.look_metres[i]
+    for i in range(memory.seen_from[end], memory.seen_from[end] + memory.seen[end]):
+        to_goal[memory.node[i] ^ 1] = memory.metres[i]
     queue = [(0.0, -2)]
     queue.pop()
-    for i in range(_look(c, memory, start_x, start_y, -1, spare)):
-        node, metres = memory.look_node[i], memory.look_metres[i]
+    for i in range(memory.seen_from[begin], memory.seen_from[begin] + memory.seen[begin]):
+        node, metres = memory.node[i], memory.metres[i]
         best[node], came[node] = metres, START
         k = node // 2
         heappush(queue, (metres + sqrt((goal_x - c.x[k]) ** 2 + (goal_y - c.y[k]) ** 2), node))
@@ -157,15 +165,8 @@ def search(
         if node in to_goal and here + to_goal[node] < best[goal]:
             best[goal], came[goal] = here + to_goal[node], node
             heappush(queue, (best[goal], goal))
-        if memory.seen[node] == UNKNOWN:
-            found = _look(c, memory, c.x[k], c.y[k], node, spare)
-            used = memory.used[0]
-            if used + found > len(memory.node):
-                return FULL
-            memory.seen_from[node], memory.seen[node] = used, found
-            for i in range(found):
-                memory.node[used + i], memory.metres[used + i] = memory.look_node[i], memory.look_metres[i]
-            memory.used[0] = used + found
+        if _is_full(c, memory, c.x[k], c.y[k], node, spare, node):
+            return FULL
         first = memory.seen_from[node]
         for i in range(first, first + memory.seen[node]):
             other = memory.node[i]
@@ -177,6 +178,25 @@ def search(
                     best[other], came[other] = reached, node
                     heappush(queue, (rest, other))
     return NONE
+
+
+def _is_full(c: Columns, memory: Memory, x: float, y: float, node: int, spare: float, place: int) -> bool:
+    """Look from a place unless it is known what is seen there; return whether there is no room to keep it.
+
+    Args:
+        c, memory, x, y, node, spare: see `_look`.
+        place: where it is kept.
+    """
+    if memory.seen[place] != UNKNOWN:
+        return False
+    found, used = _look(c, memory, x, y, node, spare), memory.used[0]
+    if used + found > len(memory.node):
+        return True
+    memory.seen_from[place], memory.seen[place] = used, found
+    for i in range(found):
+        memory.node[used + i], memory.metres[used + i] = memory.look_node[i], memory.look_metres[i]
+    memory.used[0] = used + found
+    return False
 
 
 def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: float) -> int:

@@ -24,6 +24,9 @@ _MANY = 50
 _SETS = 32
 """Sets of areas at most for which is kept what was seen."""
 
+_PLACES = 1000
+"""Places at most where paths begin or end for which is kept what was seen from there."""
+
 
 class Visibility:
     """Finds shortest paths among grown areas, of which those count that block at a height."""
@@ -34,6 +37,7 @@ class Visibility:
         self._columns: Columns | None = None
         self._room: tuple[Any, ...] = ()
         self._memories: dict[bytes, Memory] = {}
+        self._places: dict[bytes, dict[Place, int]] = {}
         self._rows: dict[tuple[Place, int], Flags] = {}
         self._pairs: dict[tuple[Place, Place], Flags] = {}
 
@@ -51,13 +55,14 @@ class Visibility:
         if self._columns is None:
             self._columns = columns_of(self._obstacles, self._column)
             self._room = _room_among(self._columns, self._column)
-        columns, nodes = self._columns, 2 * len(self._columns.x)
+        columns, nodes, key = self._columns, 2 * len(self._columns.x), blocks.tobytes()
         memory = self._memory(blocks, nodes)
+        ends = [nodes + self._places[key].setdefault(each, len(self._places[key])) for each in (start, goal)]
         search = compiled(sight, "search").search if self._compiled else sight.search
-        metres = search(columns, memory, *start, *goal, longest, EPSILON / 2)
+        metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, *ends)
         while metres == FULL:
-            memory = self._memories[blocks.tobytes()] = self._enlarged(memory)
-            metres = search(columns, memory, *start, *goal, longest, EPSILON / 2)
+            memory = self._memories[key] = self._enlarged(memory)
+            metres = search(columns, memory, *start, *goal, longest, EPSILON / 2, *ends)
         if metres == NONE:
             return None
         path, node = [goal], int(memory.came[nodes])
@@ -69,14 +74,16 @@ class Visibility:
     def _memory(self, blocks: Flags, nodes: int) -> Memory:
         key = blocks.tobytes()
         memory = self._memories.pop(key, None)
-        if memory is None:
+        if memory is None or len(self._places[key]) > _PLACES - 2:
             if len(self._memories) == _SETS:
-                del self._memories[next(iter(self._memories))]
+                oldest = next(iter(self._memories))
+                del self._memories[oldest], self._places[oldest]
+            self._places[key] = {}
             column = self._column
             memory = Memory(
                 column(blocks),
-                column(np.zeros(nodes, np.int64)),
-                column(np.full(nodes, UNKNOWN)),
+                column(np.zeros(nodes + _PLACES, np.int64)),
+                column(np.full(nodes + _PLACES, UNKNOWN)),
                 column(np.zeros(nodes, np.int64)),
                 column(np.zeros(nodes)),
                 column(np.zeros(1, np.int64)),
