@@ -224,23 +224,22 @@ PX4_COPTER = AutopilotTiming(
         spread=1.1,
         reporting=10.0,
     ),
-    launch=5.8,
-    recovery=3.5,
-    noticing=2.0,
+    launch=6.1,
+    recovery=3.8,
+    noticing=2.3,
     guiding=1.8,
     landing_rate=0.7,
     landing_height=6.9,
     turn_rate=45.0,
 )
 """MPC_ACC_HOR, MPC_JERK_AUTO, MPC_XY_VEL_MAX, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_TKO_SPEED,
-MPC_LAND_SPEED and MPC_YAWRAUTO_MAX; COM_DISARM_LAND is two of the seconds of recovery. Between MPC_LAND_ALT1
-(10 m) and MPC_LAND_ALT2 (5 m) it descends ever more slowly, from MPC_Z_V_AUTO_DN to MPC_LAND_SPEED: that
-takes as long as if it were slow from 6.9 m on. The rest of the recovery is its land detector: it wants the
-estimated climb within LNDMC_Z_VEL_MAX for a second. 8 landings of missions from 12 m took 13.4 to 15.7 s,
-14.5 s in the mean, with a standard deviation of 0.7 s, and 18 of programs 16.3 to 21.2 s, 18.6 s in the mean,
-with 1.3 s. That was with LNDMC_Z_VEL_MAX = 0.5 and MPC_LAND_CRWL = 0.6, which must be larger. By default
-it is 0.25 m/s, less than the estimate of its simulation wanders by on the ground, and 45 landings took up to
-32.3 s: so the bounds of launch and landing are wider than those of legs.
+MPC_LAND_SPEED and MPC_YAWRAUTO_MAX. Between MPC_LAND_ALT1 (10 m) and MPC_LAND_ALT2 (5 m) it descends ever
+more slowly, from MPC_Z_V_AUTO_DN to MPC_LAND_SPEED: that takes as long as if it were slow from 6.9 m on.
+Then its land detector wants the estimated climb within LNDMC_Z_VEL_MAX for a second. 8 landings of missions
+from 12 m took 13.4 to 15.7 s, 14.5 s in the mean, with a standard deviation of 0.7 s, and 18 of programs
+16.3 to 21.2 s, 18.6 s in the mean, with 1.3 s. That was with LNDMC_Z_VEL_MAX = 0.5 and MPC_LAND_CRWL = 0.6,
+which is to be larger. By default it is 0.25 m/s, less than the estimate of its simulation wanders by on the
+ground, and 45 landings took up to 32.3 s: so the bounds of launch and landing are wider than those of legs.
 
 Leg by leg its set-point goes at the commanded speed from the first to the last metre (``vehicles/px4.py``),
 and its own controllers are linear (``PositionControl.cpp``). So it trails by 1 / MPC_XY_P, 0.95 per second;
