@@ -14,9 +14,9 @@ from functools import cached_property
 from hashlib import sha256
 
 from mmrs_core.diagnostics import Place
+from mmrs_core.languages.uris import BEHAVIOUR as BEHAVIOUR
 from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, TravelMode, Value
 from mmrs_core.scene.headings import bearing
-from mmrs_core.scene.primitives import BEHAVIOUR as BEHAVIOUR
 from mmrs_runtime import program as engine
 from mmrs_runtime.program import SlotId as SlotId
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from mmrs_core.contributions.rules import most_specific
-from mmrs_core.scene.primitives import CONTEXT, MISSION
+from mmrs_core.languages.uris import CONTEXT, MISSION
 
 if TYPE_CHECKING:
     from mmrs_core.drawings.drawing import Property

@@ -9,9 +9,9 @@ from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.grounding.features import child, children, literal, number, text
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, descendants, is_kind, label_of, path_of, place_of
+from mmrs_core.languages.uris import BEHAVIOUR
+from mmrs_core.languages.uris import MISSION as MISSION
 from mmrs_core.scene import AltitudeReference, Frame
-from mmrs_core.scene.primitives import BEHAVIOUR
-from mmrs_core.scene.primitives import MISSION as MISSION
 
 REFERENCES: tuple[AltitudeReference, ...] = get_args(AltitudeReference)
 NOWHERE = "GND001"

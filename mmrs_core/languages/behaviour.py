@@ -6,7 +6,7 @@ The classes come from ``behaviour.ecore`` when they are first asked for; the stu
 from __future__ import annotations
 
 from mmrs_core.languages.registry import members_of
-from mmrs_core.scene.primitives import BEHAVIOUR
+from mmrs_core.languages.uris import BEHAVIOUR
 
 NS_URI = BEHAVIOUR
 __getattr__, __dir__ = members_of(NS_URI)

@@ -6,7 +6,7 @@ The classes come from ``context.ecore`` when they are first asked for; the stub 
 from __future__ import annotations
 
 from mmrs_core.languages.registry import members_of
-from mmrs_core.scene.primitives import CONTEXT
+from mmrs_core.languages.uris import CONTEXT
 
 NS_URI = CONTEXT
 __getattr__, __dir__ = members_of(NS_URI)

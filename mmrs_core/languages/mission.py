@@ -6,7 +6,7 @@ The classes come from ``mission.ecore`` when they are first asked for; the stub 
 from __future__ import annotations
 
 from mmrs_core.languages.registry import members_of
-from mmrs_core.scene.primitives import MISSION
+from mmrs_core.languages.uris import MISSION
 
 NS_URI = MISSION
 __getattr__, __dir__ = members_of(NS_URI)

@@ -6,7 +6,7 @@ The classes come from ``robot.ecore`` when they are first asked for; the stub be
 from __future__ import annotations
 
 from mmrs_core.languages.registry import members_of
-from mmrs_core.scene.primitives import ROBOT
+from mmrs_core.languages.uris import ROBOT
 
 NS_URI = ROBOT
 __getattr__, __dir__ = members_of(NS_URI)

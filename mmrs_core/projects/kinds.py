@@ -11,8 +11,8 @@ from mmrs_core.drawings.drawing import Geometry
 from mmrs_core.errors import UsageError
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.naming import nearest
-from mmrs_core.scene.primitives import CONTEXT as CONTEXT
-from mmrs_core.scene.primitives import MISSION as MISSION
+from mmrs_core.languages.uris import CONTEXT as CONTEXT
+from mmrs_core.languages.uris import MISSION as MISSION
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions

@@ -1,4 +1,4 @@
-"""Words of the whole scene: positions, names of languages and metaclasses, elements as stages see them."""
+"""Words of the whole scene: positions, names of metaclasses, model elements as stages see them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,6 @@ Point: TypeAlias = tuple[float, float]
 Ring: TypeAlias = tuple[Point, ...]
 Name: TypeAlias = tuple[str, str]
 Metaclasses: TypeAlias = tuple[Name, ...]
-
-MISSION, CONTEXT = "urn:mmrs:mission:1.0", "urn:mmrs:context:1.0"
-ROBOT, BEHAVIOUR = "urn:mmrs:robot:1.0", "urn:mmrs:behaviour:1.0"
-"""The core's languages, by nsURI."""
 
 TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]

@@ -12,9 +12,9 @@ from mmrs_core.behaviour.travel import SHARE_OF_LARGEST_SPEED
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.languages.uris import BEHAVIOUR
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
 from mmrs_core.scene.headings import bearing
-from mmrs_core.scene.primitives import BEHAVIOUR
 from mmrs_core.scene.timing import MoveSeconds, noticing
 
 if TYPE_CHECKING:

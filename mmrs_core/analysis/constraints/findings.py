@@ -8,10 +8,10 @@ from mmrs_core.contributions.constraints import Finding
 from mmrs_core.grounding.features import text
 from mmrs_core.languages.element import Element, Unknown, label_of, metaclass_of, path_of
 from mmrs_core.languages.naming import nearest
-from mmrs_core.scene.primitives import BEHAVIOUR as BEHAVIOUR
-from mmrs_core.scene.primitives import CONTEXT as CONTEXT
-from mmrs_core.scene.primitives import MISSION as MISSION
-from mmrs_core.scene.primitives import ROBOT as ROBOT
+from mmrs_core.languages.uris import BEHAVIOUR as BEHAVIOUR
+from mmrs_core.languages.uris import CONTEXT as CONTEXT
+from mmrs_core.languages.uris import MISSION as MISSION
+from mmrs_core.languages.uris import ROBOT as ROBOT
 
 
 def called(element: Element) -> str:

@@ -11,8 +11,8 @@ from mmrs_core.languages.element import Element, container_of, is_kind, metaclas
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.named import LONGEST_COMPARED, NamedElements
 from mmrs_core.languages.references.spelling import Name, is_address, references_in, spelt
+from mmrs_core.languages.uris import BEHAVIOUR
 from mmrs_core.languages.xmi.markup import Tag
-from mmrs_core.scene.primitives import BEHAVIOUR
 
 _SHORT = 5
 """Letters below which two wrong ones make too much of a word."""

@@ -21,6 +21,7 @@ from mmrs_core.grounding.parts import area_of, names_of, part_of, use_of
 from mmrs_core.grounding.robots import robot_type_of
 from mmrs_core.languages.element import Element, Unknown, is_kind, place_of
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.uris import ROBOT
 from mmrs_core.pictures.preview.features import (
     NO_CONTEXT,
     elements_of,
@@ -44,7 +45,6 @@ from mmrs_core.pictures.preview.picture import (
     Zone,
 )
 from mmrs_core.scene import Name, Point, Position, RobotType, Scene, Task
-from mmrs_core.scene.primitives import ROBOT
 
 _AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 _ELEMENTS = ("elements", "corridors")

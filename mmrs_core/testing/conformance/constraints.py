@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
-from mmrs_core.scene.primitives import BEHAVIOUR, CONTEXT, MISSION
+from mmrs_core.languages.uris import BEHAVIOUR, CONTEXT, MISSION
 from mmrs_core.testing.conformance.declared import Conformance, declared, law
 from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 from mmrs_core.testing.models import breaches, findings

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.contributions.registry import Contributions
+from mmrs_core.languages.uris import BEHAVIOUR, MISSION
 from mmrs_core.plugins import load_plugins
-from mmrs_core.scene.primitives import BEHAVIOUR, MISSION
 from mmrs_core.testing.conformance.declared import Conformance, declared
 
 TASK = (MISSION, "Task")

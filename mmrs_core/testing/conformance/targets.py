@@ -14,7 +14,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities.judging import TargetCapability, capabilities_of, lost, probes
 from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
-from mmrs_core.scene.primitives import BEHAVIOUR
+from mmrs_core.languages.uris import BEHAVIOUR
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import installed, two_robots
 

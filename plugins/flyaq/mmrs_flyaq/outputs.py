@@ -10,8 +10,8 @@ from pathlib import Path, PurePosixPath
 from mmrs_core.grounding.features import text
 from mmrs_core.languages.element import Element, descendants, held, is_kind, label_of, metaclass_of
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.uris import BEHAVIOUR, CONTEXT, MISSION
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.scene.primitives import BEHAVIOUR, CONTEXT, MISSION
 from mmrs_flyaq.findings import Category, Record
 from mmrs_flyaq.rules.rules_file import ROBOT_TYPE
 from mmrs_flyaq.sources.nodes import SourceNode

@@ -10,13 +10,13 @@ from shapely import Point
 
 from mmrs_core.analysis.constraints.ranges import Range, at_least_zero, every
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, Sketch, polygon_of, sketch_of
-from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.coordinates import heights_of_task
 from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.uris import BEHAVIOUR
 from mmrs_rover.names import ROVER, TERRAIN
 from mmrs_rover.terrain import LIMITS, hindrances
 
