@@ -18,7 +18,7 @@ from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
 from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.scene import Capability, Kinematics
-from mmrs_core.scene.timing import Rates
+from mmrs_core.scene.timing import STANDING, Rates
 from mmrs_core.testing.programs import installed, move, program
 from mmrs_mavlink.plugin.vehicles import timings
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PROFILES, PX4_MULTICOPTER
@@ -292,6 +292,22 @@ def test_a_px4_that_passes_corners_on_a_mission_takes_what_was_measured(speed, d
     push = rates.push(*leg, (0.5 * sin(aside), 0.5 * cos(aside)))
     seconds = rates.from_stop_to_stop(*after, push=push) - rates.settling(*after) - rates.overlap(leg, after)
     assert seconds == pytest.approx(measured, rel=0.1)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.5, 20.0, 90.0, 135.0, 179.0, 180.0])
+@pytest.mark.parametrize("metres", [0.3, 1.0, 3.0, 8.0, 30.0, 100.0])
+@pytest.mark.parametrize("speed", [1.0, 5.0, 12.0])
+def test_what_a_px4_is_expected_to_take_between_corners_is_within_the_bounds(speed, metres, turn):
+    """A sharp corner may cost it more than a stop would."""
+    figures = PX4_MULTICOPTER.pacing.mission
+    assert figures is not None
+    rates = Rates(speed, figures.climb, figures.descent, figures)
+    corner, aside = (0.0, metres, 0.0), radians(turn)
+    leg = (corner, (metres * sin(aside), metres + metres * cos(aside), 0.0))
+    saved = rates.overlap(((0.0, 0.0, 0.0), corner), leg) + rates.settling(*leg)
+    seconds = rates.from_stop_to_stop(*leg, push=STANDING) - saved
+    most = rates.latest().from_stop_to_stop(*leg, push=STANDING)
+    assert rates.soonest().eased(*leg) <= seconds <= most
 
 
 def test_a_px4_lands_as_long_as_was_measured_and_within_the_bounds_of_launch_and_landing():
