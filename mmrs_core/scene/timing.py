@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
-from mmrs_runtime.timing import IDEAL, LegTiming, reaching
+from mmrs_runtime.timing import IDEAL, LegTiming, half_turn, reaching
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -248,7 +248,7 @@ class Rates:
         second, but it comes no further from the corner than its radius, and half of the turn is over when it
         is as far before as behind it. One that slows down for the corner saves what it need not brake.
         """
-        if self.timing.turning:
+        if self.timing.slows_down:
             return self.share * self._kept_up(before, after)
         both = min(self._phases(*before)[1], self._phases(*after)[0])
         return self.share * min(both, self._turning(before, after))
@@ -256,7 +256,7 @@ class Rates:
     def settling(self, start: Position, end: Position) -> float:
         """Return the seconds that a leg takes longer as it ends with a stop, which is not passed."""
         seconds, fastest = self._stopping(start, end)
-        lag = 0.0 if self.timing.turning else self._lag(seconds, start, end)
+        lag = 0.0 if self.timing.slows_down else self._lag(seconds, start, end)
         return self.share * max(0.0, lag + self.timing.settled(fastest, seconds))
 
     def eased(self, start: Position, end: Position, entering: float = 0.0) -> float:
@@ -381,12 +381,7 @@ class Rates:
         aside = _half_turn(before, after)
         if aside is None:
             return 0.0
-        speed, saved = self.timing.passing(aside), -self.timing.rounding(aside)
-        for leg, limit in ((before, self.timing.braking), (after, self.timing.acceleration)):
-            if fastest := self._stopping(*leg)[1]:
-                seconds, metres = reaching(min(speed, fastest), limit, self.timing.jerk)
-                saved += seconds - metres / fastest
-        return saved
+        return self.timing.corner(aside, self._stopping(*before)[1], self._stopping(*after)[1]).saved
 
     def _turning(self, before: Leg, after: Leg) -> float:
         """Return the seconds of a turn that comes as far from its corner as the radius at most.
@@ -417,10 +412,7 @@ class Rates:
 def _half_turn(before: Leg, after: Leg) -> float | None:
     """Return the sine of half the turn between two legs; None where one has no length."""
     one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
-    lengths = hypot(*one) * hypot(*two)
-    if lengths <= 0.0:
-        return None
-    return sqrt(max(0.0, 1.0 - sum(p * q for p, q in zip(one, two, strict=True)) / lengths) / 2.0)
+    return half_turn(one, two)
 
 
 def _along(start: Position, end: Position, push: Push | None) -> float:

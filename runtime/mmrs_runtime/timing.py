@@ -5,14 +5,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, inf, log, sqrt
+from math import exp, hypot, inf, log, sqrt
+from typing import NamedTuple
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
 
 RESTING = 0.3
 """Metres from its set-point within which a robot that trails it is as slow as one that stands still."""
+
+
+class Corner(NamedTuple):
+    """How a corner is passed: the speed, seconds for which it keeps it, and those that it saves so."""
+
+    speed: float
+    keeps: float
+    saved: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +37,9 @@ class LegTiming:
         speed: largest that it makes, metres per second.
         climb, descent: largest that it makes, metres per second.
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
-        turning: acceleration to the side, metres per second squared, that it slows down for where it passes a
-            corner; 0: it begins the next leg before the end of the last one.
-        cornering: seconds that it takes then to turn right round (see `rounding`).
+        turning: share of its acceleration with which it goes round a corner that it passes, for which it
+            slows down; 0: it begins the next leg before the end of the last one.
+        cornering: seconds for which it keeps the speed of a corner by which it turns right round (`corner`).
         acceptance: metres from a target at which it may count as reached: so short a leg may take no time,
             and another one may be so much longer that begins there; so much shorter, too, without `still`.
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
@@ -127,20 +137,30 @@ class LegTiming:
         away = 2.0 * sqrt(2.0 * max(0.0, beyond - self.acceptance) * self.trailing / self.returning)
         return min(still, near + away + self.waiting)
 
-    def passing(self, aside: float) -> float:
-        """Return the speed at which it passes a corner that it slows down for, metres per second.
+    @property
+    def slows_down(self) -> bool:
+        """Return whether it slows down for corners that it passes."""
+        return self.turning > 0.0 and self.corner_radius > 0.0
 
-        It takes a circle that touches both legs as far from the corner as its radius.
+    def corner(self, aside: float, before: float, after: float) -> Corner:
+        """Return how it passes a corner that it slows down for.
+
+        It takes a circle that touches both legs as far from the corner as its radius, no faster than it
+        gets on either leg from a stop, and turns for no longer than a stop would take.
 
         Args:
             aside: sine of half the turn.
+            before, after: largest speeds of the legs, metres per second.
         """
         ahead = sqrt(max(0.0, 1.0 - aside * aside))
-        return sqrt(self.turning * self.corner_radius * ahead / aside) if aside > 0.0 else inf
-
-    def rounding(self, aside: float) -> float:
-        """Return the seconds that it keeps the speed of a corner for; `aside`: sine of half the turn."""
-        return float(self.cornering * aside**1.5)
+        circle = self.turning * self.acceleration * self.corner_radius * ahead
+        speed = min(before, after, sqrt(circle / aside) if aside > 0.0 else inf)
+        saved = 0.0
+        for fastest, limit in ((before, self.braking), (after, self.acceleration)):
+            seconds, metres = reaching(speed, limit, self.jerk)
+            saved += seconds - metres / fastest if fastest > 0.0 else 0.0
+        keeps = min(self.cornering * aside**1.5, saved + max(0.0, self.settling))
+        return Corner(speed, keeps, saved - keeps)
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.
@@ -160,6 +180,14 @@ def reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, flo
         return seconds, speed * seconds / 3.0
     seconds = speed / acceleration + bend / 2.0
     return seconds, speed * speed / (2.0 * acceleration) + acceleration * bend * bend / 24.0
+
+
+def half_turn(before: Sequence[float], after: Sequence[float]) -> float | None:
+    """Return the sine of half the turn between two directions; None where one has no length."""
+    lengths = hypot(*before) * hypot(*after)
+    if lengths <= 0.0:
+        return None
+    return sqrt(max(0.0, 1.0 - sum(p * q for p, q in zip(before, after, strict=True)) / lengths) / 2.0)
 
 
 IDEAL = LegTiming()

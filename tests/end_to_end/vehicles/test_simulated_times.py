@@ -11,6 +11,7 @@ from shutil import copytree, ignore_patterns
 import pytest
 from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
 from flown_times.simulated import simulate_mission, simulate_steps
+from real_flights.routes import COPTER, Route, on_px4, routes
 from real_flights.table import FLIGHTS
 
 FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
@@ -69,6 +70,25 @@ def test_a_simulated_mission_takes_what_is_planned(name, robot, others, tmp_path
     assert found.whole
     assert list(found.faults()) == []
     assert len(found.legs) - found.good_legs <= others
+
+
+@pytest.mark.parametrize(
+    "places",
+    [
+        ((0.0, 70.0, 12.0), (0.0, 40.0, 12.0), (0.0, 60.0, 12.0), (0.0, 10.0, 12.0)),
+        ((20.0, 10.0, 12.0), (20.0, 10.0, 22.0), (20.0, -20.0, 22.0), (40.0, -20.0, 22.0)),
+        ((20.0, 30.0, 12.0), (20.0, 0.0, 12.0), (20.0, 0.0, 12.0), (40.0, 0.0, 12.0)),
+        tuple((0.3 * (index % 2), 3.0 * (index % 2), 12.0) for index in range(1, 12)),
+    ],
+    ids=["right round", "climb", "a place twice", "short and sharp"],
+)
+def test_a_simulated_px4_passes_any_corner_as_planned(places, tmp_path):
+    route = Route("Alba", COPTER, places, 5.0, fluid=True)
+    on_px4(routes(route))(tmp_path / "models")
+    simulate_mission(tmp_path / "models", "Alba")
+    (found,) = compared(tmp_path / "models")
+    assert found.whole
+    assert list(found.faults()) == []
 
 
 @recorded

@@ -1,9 +1,9 @@
 """How long vehicles take for what they do: by their firmware's parameters and source, and as measured.
 
 Measured were ArduCopter, ArduSub and Rover 4.7-dev and PX4 1.15 in their own simulations, with the default
-parameters of their classes. Half of the flights calibrated what no source states: settling, overshoot, the
-deceleration of single legs, the speed and lag of subs; the others agree
-(``benchmarks/results/flown_times.txt``).
+parameters of their classes. Flights calibrated what no source states: settling, overshoot, the
+deceleration of single legs, the speed and lag of subs; which ones, and how others agree, is in
+``benchmarks/results/flown_times.txt``.
 Other parameters, such as WPNAV_ACCEL, make other figures: robot types state theirs.
 """
 
@@ -205,7 +205,7 @@ PX4_COPTER = AutopilotTiming(
         climb=3.0,
         descent=1.5,
         corner_radius=2.0,
-        turning=1.5,
+        turning=0.5,
         cornering=2.35,
         acceptance=2.0,
         settling=0.95,

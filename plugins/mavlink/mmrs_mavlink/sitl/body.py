@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
-from mmrs_runtime.timing import LegTiming, reaching
+from mmrs_runtime.timing import Corner, LegTiming, half_turn, reaching
 
 Vector = tuple[float, float, float]
 
@@ -43,6 +43,7 @@ class CurvedLeg:
     Attributes:
         path: from its start to its end, metres. length: of the whole one.
         before, after: what is left out at its ends, which it passes at a speed: seconds and metres.
+        corner: how it passes its end; None: it stops there.
         elapsed: seconds since its start; less than 0: it begins later.
         duration: seconds until its end. ramp: seconds to its full speed.
         lacks: share of the thrust against the drag of its hull that it lacks at its start.
@@ -59,6 +60,7 @@ class CurvedLeg:
     lacks: float = 0.0
     before: tuple[float, float] = (0.0, 0.0)
     after: tuple[float, float] = (0.0, 0.0)
+    corner: Corner | None = None
 
     def __post_init__(self) -> None:
         if self.length < self.speed * self._ramp_to(self.speed):
@@ -151,9 +153,8 @@ class Body:
     """Where the first of its legs begins."""
     _goal: Vector | None = None
     """Where the last of its legs ends."""
-    _passing: tuple[float, float] | None = None
-    """Speed at which it has passed the end of its last leg, and seconds for which it keeps that; None: it has
-    not."""
+    _passing: Corner | None = None
+    """How it has passed the end of its last leg; None: it has not."""
     _push: Vector = STILL
     """Share of the thrust against its drag at the commanded speed that it has built up on its last leg."""
 
@@ -230,8 +231,7 @@ class Body:
         while self._legs and self._legs[0].left <= 0.0:
             leg = self._legs.pop(0)
             self._push, self._start = self._pushed(leg), plus(self._start, leg.path, 1.0)
-            if leg.after[0] > 0.0:
-                self._passing = self._corner(leg.path)
+            self._passing = leg.corner
         position, self.velocity, self._acceleration = self._start, STILL, STILL
         for leg in self._legs:
             share, pace = leg.now
@@ -248,17 +248,14 @@ class Body:
         left = abs(turned(self.heading, self.wanted_heading))
         return left / self.turn_rate if left > self.pivots else 0.0
 
-    def _corner(self, path: Vector) -> tuple[float, float] | None:
-        """Return at which speed it passes the end of a leg that it slows down for; None: it stops there.
-
-        Returns:
-            Speed, and seconds for which it keeps that.
-        """
-        if not self.figures.turning or self.onward is None or self.target is None:
+    def _corner(self, path: Vector) -> Corner | None:
+        """Return how it passes the end of a leg to its target, for which it slows down; None: it stops."""
+        if not self.figures.slows_down or self.onward is None or self.target is None:
             return None
-        aside = abs(turned(course(STILL, path), course(self.target, self.onward)))
-        half = sin(radians(aside / 2.0))
-        return self.figures.passing(half), self.figures.rounding(half)
+        beyond = plus(self.onward, self.target, -1.0)
+        aside = half_turn(path, beyond)
+        peaks = (CurvedLeg(each, hypot(*each), *self._limits(each)).speed for each in (path, beyond))
+        return None if aside is None else self.figures.corner(aside, *peaks)
 
     def _slowness(self, leg: CurvedLeg) -> float:
         """Return how much longer a second of a leg takes, whose curve waits while thrust is built up."""
@@ -281,25 +278,31 @@ class Body:
         ) ** 2
 
     def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
-        path = plus(end, start, -1.0)
-        length = max(hypot(*path), CLOSE)
-        figures = self.figures
+        path, figures, passed = plus(end, start, -1.0), self.figures, self._passing
+        speed, acceleration, jerk = self._limits(path)
+        corner = self._corner(path) if end == self.target else None
+        before, after = (
+            reaching(min(each.speed, speed), acceleration, jerk) if each else (0.0, 0.0)
+            for each in (passed, corner)
+        )
+        whole = max(hypot(*path), CLOSE) + before[1] + after[1]
+        begins = before[0] - (passed.keeps if passed else 0.0)
+        leg = CurvedLeg(
+            path, whole, speed, acceleration, jerk, begins, before=before, after=after, corner=corner
+        )
+        if figures.lag and path[:2] != (0.0, 0.0):
+            leg.lacks = max(0.0, 1.0 - self._drag(leg) * _along(leg, self._push))
+        return leg
+
+    def _limits(self, path: Vector) -> tuple[float, float, float]:
+        """Return the largest speed on a leg, its acceleration and its jerk."""
+        figures, length = self.figures, max(hypot(*path), CLOSE)
         speed, acceleration = min(self.speed, figures.speed), figures.acceleration
         if path[2]:
             steep = length / abs(path[2])
             speed = min(speed, steep * self._rate(path[2]))
             acceleration = min(acceleration, steep * (figures.vertical_acceleration or inf))
-        corner = self._corner(path) if end == self.target else None
-        ends = [
-            reaching(min(passed[0], speed), acceleration, figures.jerk) if passed else (0.0, 0.0)
-            for passed in (self._passing, corner)
-        ]
-        whole = length + ends[0][1] + ends[1][1]
-        begins = ends[0][0] - (self._passing[1] if self._passing else 0.0)
-        leg = CurvedLeg(path, whole, speed, acceleration, figures.jerk, begins, before=ends[0], after=ends[1])
-        if figures.lag and path[:2] != (0.0, 0.0):
-            leg.lacks = max(0.0, 1.0 - self._drag(leg) * _along(leg, self._push))
-        return leg
+        return speed, acceleration, figures.jerk
 
     def _rate(self, rise: float) -> float:
         """Return the largest vertical speed."""
@@ -308,7 +311,7 @@ class Body:
     def _begin_turn(self, target: Vector) -> None:
         """Begin the next leg where the middle of the turn is within the radius of the corner."""
         leg = self._legs[-1]
-        if self.figures.turning or self.onward is None or self._goal != target or not leg.slows:
+        if self.figures.slows_down or self.onward is None or self._goal != target or not leg.slows:
             return
         following, half = self._leg(target, self.onward), leg.left / 2.0
         before, after = leg.length - leg.at(leg.elapsed + half)[0], following.at(half)[0]

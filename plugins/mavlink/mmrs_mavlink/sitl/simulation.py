@@ -249,7 +249,7 @@ def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     body.target, body.onward = place, _onward(pilot, item)
     pilot.face(place)
     if body.onward is not None:
-        return body.passes_target()
+        return body.passes_target() or (body.rested >= 0.0 and body.distance_to(place) <= CLOSE)
     settles = body.figures.settling - body.figures.starting - HOLD
     if not pilot.held and (body.distance_to(place) > CLOSE or body.rested < settles):
         return False

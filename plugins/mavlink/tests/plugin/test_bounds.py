@@ -298,16 +298,17 @@ def test_a_px4_that_passes_corners_on_a_mission_takes_what_was_measured(speed, d
 @pytest.mark.parametrize("metres", [0.3, 1.0, 3.0, 8.0, 30.0, 100.0])
 @pytest.mark.parametrize("speed", [1.0, 5.0, 12.0])
 def test_what_a_px4_is_expected_to_take_between_corners_is_within_the_bounds(speed, metres, turn):
-    """A sharp corner may cost it more than a stop would."""
-    figures = PX4_MULTICOPTER.pacing.mission
-    assert figures is not None
+    """So it is of a type that states a narrow spread; a corner costs no more than a stop there."""
+    assert PX4_MULTICOPTER.pacing.mission is not None
+    figures = replace(PX4_MULTICOPTER.pacing.mission, spread=0.05)
     rates = Rates(speed, figures.climb, figures.descent, figures)
     corner, aside = (0.0, metres, 0.0), radians(turn)
     leg = (corner, (metres * sin(aside), metres + metres * cos(aside), 0.0))
     saved = rates.overlap(((0.0, 0.0, 0.0), corner), leg) + rates.settling(*leg)
     seconds = rates.from_stop_to_stop(*leg, push=STANDING) - saved
     most = rates.latest().from_stop_to_stop(*leg, push=STANDING)
-    assert rates.soonest().eased(*leg) <= seconds <= most
+    assert saved >= -1e-9
+    assert rates.soonest().eased(*leg) <= seconds <= most + 1e-9
 
 
 def test_a_px4_lands_as_long_as_was_measured_and_within_the_bounds_of_launch_and_landing():
