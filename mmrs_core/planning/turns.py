@@ -61,7 +61,7 @@ def turn_of(name: str, states: States, pilots: Mapping[str, Pilot], task: str) -
         if other != name and state.away:
             if not pilots[other].affords_home(state, 0.0, state.at):
                 return None
-            found[other] = pilots[other].home(state, task)
+            found[other] = pilots[other].home(state)
     others = [state.time for other, state in found.items() if other != name and state.sorties]
     if not found[name].away and others:
         pilot = pilots[name]

@@ -176,6 +176,9 @@ def _robot_faults(scene, robot, plan):
         walk.faults.append(f"ends at {walk.here}, not at home")
     if robot.kinematics.launches and walk.away:
         walk.faults.append("never lands")
+    served = {step.task for step in flat(plan.steps) if isinstance(step, Serve | Branch)}
+    aside = {step.task for step in flat(plan.steps)} - served - {""}
+    walk.faults += [f"has steps for '{task}', which it does not do" for task in sorted(aside)]
     return [*walk.faults, *_corridor_faults(scene, robot, plan.steps)]
 
 
