@@ -210,9 +210,10 @@ class MixedFilling:
         return self._groups[index][0], mine[0].run.begin, mine[-1].end
 
     def _leaves_enough(self, index: int, runs: Runs) -> bool:
-        """Return whether runs leave a portion for each robot of the next group that must have one."""
-        sort, group = self._groups[index + 1]
-        return not self._everyone or len(self._mixture.rest(sort, runs).layout.portions) >= len(group)
+        """Return whether runs leave the next group a portion for each robot to come that must have one."""
+        later = self._groups[index + 1 :]
+        robots = sum(len(group) for _, group in later)
+        return not self._everyone or len(self._mixture.rest(later[0][0], runs).layout.portions) >= robots
 
     def _taken(self, filling: RowFilling, limit: float, most: int) -> list[Share]:
         """Return shares of as many portions, at most some, as robots can do by a time."""

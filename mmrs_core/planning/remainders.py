@@ -71,6 +71,7 @@ class Remainders:
         self.parts = [tuple(part for stroke in work.strokes for part in parts_of(stroke)) for work in works]
         self._over_ground = all(work.coverage is not None for work in works)
         self._works = works
+        self._covered: dict[int, Shapes] = {}
         self._ground: dict[int, Shapes] = {}
         self._patches: dict[_Part, list[frozenset[_Part]]] = {}
         self._under: dict[tuple[int, int], list[list[int]]] = {}
@@ -98,7 +99,7 @@ class Remainders:
             own, alike = self._ground_of(sort)[part], dict[bytes, set[_Part]]()
             for other in range(len(self.parts)):
                 for each in self._under_of(sort, other)[part] if other != sort else ():
-                    alike.setdefault(shapely.to_wkb(self._ground_of(other)[each]), set()).add((other, each))
+                    alike.setdefault(shapely.to_wkb(self._covered_by(other)[each]), set()).add((other, each))
             shapes = shapely.from_wkb(list(alike))
             inner = shapely.intersection(shapely.boundary(shapes), own)
             edges = shapely.union_all([shapely.boundary(own), *inner], grid_size=GRID)
@@ -117,22 +118,30 @@ class Remainders:
     def _ground_of(self, sort: int) -> Shapes:
         """Return what each part of a sort's work covers of its target."""
         if sort not in self._ground:
-            coverage = self._works[sort].coverage
+            coverage, shapes = self._works[sort].coverage, self._covered_by(sort).copy()
             assert coverage is not None
             target = shapely.union_all([shapely.Polygon(*rings) for rings in coverage.target], grid_size=GRID)
             shapely.prepare(target)
-            shapes = np.array([_ground(part, coverage) for part in self.parts[sort]], dtype=object)
             inside = shapely.covers(target, shapes)
             cut = shapely.intersection(shapes[~inside], target, grid_size=GRID)
             shapes[~inside] = [shapely.MultiPolygon(parts(each)) for each in cut]
             self._ground[sort] = shapes
         return self._ground[sort]
 
+    def _covered_by(self, sort: int) -> Shapes:
+        """Return what each part of a sort's work covers, also beyond its target."""
+        if sort not in self._covered:
+            coverage = self._works[sort].coverage
+            assert coverage is not None
+            shapes = [_ground(part, coverage) for part in self.parts[sort]]
+            self._covered[sort] = np.array(shapes, dtype=object)
+        return self._covered[sort]
+
     def _under_of(self, sort: int, other: int) -> list[list[int]]:
         """Return, by part of a sort, the parts of another one that cover some of the same ground."""
         if (sort, other) not in self._under:
             found: list[list[int]] = [[] for _ in self.parts[sort]]
-            near = shapely.STRtree(self._ground_of(other)).query(self._ground_of(sort), "intersects")
+            near = shapely.STRtree(self._covered_by(other)).query(self._ground_of(sort), "intersects")
             for part, each in near.T.tolist():
                 if self.parts[sort][part].part == self.parts[other][each].part:
                     found[part].append(each)

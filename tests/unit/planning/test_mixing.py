@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from plain_scenes import CAMERA, DRONE, field_work, photo, robot, scene, task
+from plain_scenes import CAMERA, DRONE, box, field_work, photo, robot, scene, task
 from plan_replay import complaints, flat
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
+from mmrs_core.planning.remainders import Remainders, Turn
 from mmrs_core.scene import ActionAt, Gap, Serve, Stroke, Work
 
 FIELD = ((0.0, 50.0), (300.0, 50.0), (300.0, 200.0), (0.0, 200.0))
@@ -122,6 +123,15 @@ def test_the_entry_is_the_way_of_one_robot_only():
     }
     found = mixed(works, robots)
     assert sum(any(entry in getattr(s, "route", ()) for s in each.steps) for each in found.robots) == 1
+
+
+def test_what_others_photograph_beside_their_own_target_is_not_photographed_again():
+    """One sort must keep 5 mm further from a mast, but its photos reach beyond that."""
+    areas = (box("mast", 40.0, 60.0, 48.0, 75.0),)
+    scenes = [scene((robot(clearance=clearance),), {}, areas=areas) for clearance in (1.005, 1.0)]
+    known = Remainders([field_work(each, FIELD, width=7.0, length=6.0) for each in scenes])
+    every = frozenset(range(len(known.parts[0])))
+    assert known.left(1, [Turn(0, left=every, done=every)]) == frozenset()
 
 
 def test_works_with_nothing_in_common_are_not_shared():
