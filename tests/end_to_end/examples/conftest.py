@@ -2,45 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import pytest
 
 from mmrs_core import pipeline
 from mmrs_core.languages.reading import read_model
 from mmrs_core.resources import shipped
+from mmrs_core.stages import Stages
 
-MISSIONS = (
-    "carbon-dioxide",
-    "pool",
-    "mixed-team",
-    "solar-park",
-    "drone-and-rover",
-    "outfall",
-    "pool-course",
-    "two-auv-survey",
-    "lost-float",
-    "barn",
-    "ridge",
-)
+MISSIONS = sorted(file.parent.name for file in shipped("examples").glob("*/mission.xmi"))
 ASSUMED = {"Lost float": {"found:lost float": True}}
 """What choices ask that nobody else can answer, by mission."""
 
 
-@dataclass(frozen=True)
-class Taken:
-    """What every stage made of an example."""
+class Example(Stages):
+    """An example, every stage of which is made once."""
 
-    models: object
-    faults: tuple
-    scene: object
-    plan: object
-    behaviour: object
-    trace: object
-    program: object
-    place: pipeline.BehaviourContext
-    verdicts: tuple
+    def __init__(self, folder, contributions):
+        models, self.faults = pipeline.valid_models(folder, contributions)
+        super().__init__(lambda: models, contributions)
+
+    @property
+    def behaviour(self):
+        return self.transformed[0]
+
+    @property
+    def trace(self):
+        return self.transformed[1]
+
+    @cached_property
+    def run(self):
+        """The simulated run."""
+        assumed = ASSUMED.get(self.scene.name)
+        return pipeline.simulate(self.program, self.place, self._contributions, assume=assumed)
 
 
 @pytest.fixture(scope="session")
@@ -51,41 +46,20 @@ def folder_of():
 
 @pytest.fixture(scope="session")
 def taken(contributions, folder_of):
-    """Return an example of a mission after every stage up to verification, by name."""
+    """Return an example of a mission by name."""
+    return cache(lambda name: Example(folder_of(name), contributions))
 
-    @cache
-    def take(name):
-        models, faults = pipeline.valid_models(folder_of(name), contributions)
-        scene = pipeline.expand(pipeline.ground(models), contributions)
-        plan = pipeline.plan(scene)
-        behaviour, trace = pipeline.transform(scene, plan, contributions)
-        program = pipeline.program_of(behaviour, contributions)
-        place = pipeline.place_of_scene(scene)
-        verdicts = pipeline.verify(program, place, contributions)
-        return Taken(models, faults, scene, plan, behaviour, trace, program, place, verdicts)
 
-    return take
+@pytest.fixture(scope="session")
+def missions():
+    """Return the names of the examples of missions."""
+    return MISSIONS
 
 
 @pytest.fixture(scope="session", params=MISSIONS)
 def example(request, taken):
-    """Return each example of a mission after every stage."""
+    """Return each example of a mission."""
     return taken(request.param)
-
-
-@pytest.fixture(scope="session")
-def run_of(contributions):
-    """Return the simulated run of an example."""
-    runs = {}
-
-    def simulate(example):
-        if id(example) not in runs:
-            runs[id(example)] = pipeline.simulate(
-                example.program, example.place, contributions, assume=ASSUMED.get(example.scene.name)
-            )
-        return runs[id(example)]
-
-    return simulate
 
 
 @pytest.fixture(scope="session")

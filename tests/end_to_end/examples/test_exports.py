@@ -98,8 +98,8 @@ def test_every_shape_is_where_its_model_says_to_a_centimetre(exported, form, nam
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_each_path_is_as_simulated_and_its_times_rise(exported, form, name, taken, run_of):
-    tracks = run_of(taken(name)).tracks
+def test_each_path_is_as_simulated_and_its_times_rise(exported, form, name, taken):
+    tracks = taken(name).run.tracks
     paths = {each.name: each for each in exported(name, form)[2].features if each.role is Role.PATH}
     for robot, samples in tracks.items():
         if robot not in paths:

@@ -13,7 +13,6 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.cli.examples import example_folder
 from mmrs_core.cli.simulation import write_logs
-from mmrs_core.contributions.checks import Status
 from mmrs_core.pipeline import simulate
 from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.semantics import Outcome
@@ -78,10 +77,6 @@ def bay(tmp_path):
         return path
 
     return write
-
-
-def test_the_mission_is_safe(taken):
-    assert not [each for each in taken("lost-float").verdicts if each.status is Status.VIOLATED]
 
 
 def test_the_vehicle_goes_to_where_the_drone_has_seen_the_float(search, bay):

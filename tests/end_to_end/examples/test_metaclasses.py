@@ -9,31 +9,6 @@ from mmrs_core.languages.element import descendants, metaclass_of
 pytestmark = pytest.mark.together("examples")
 
 BEGIN, END = "<!-- metaclasses: begin -->\n", "<!-- metaclasses: end -->\n"
-MISSIONS = (
-    "carbon-dioxide",
-    "pool",
-    "mixed-team",
-    "solar-park",
-    "drone-and-rover",
-    "outfall",
-    "pool-course",
-    "two-auv-survey",
-    "lost-float",
-    "barn",
-    "ridge",
-)
-LANGUAGES = (
-    "urn:mmrs:mission:1.0",
-    "urn:mmrs:context:1.0",
-    "urn:mmrs:robot:1.0",
-    "urn:mmrs:behaviour:1.0",
-    "urn:mmrs:multicopter:1.0",
-    "urn:mmrs:auv:1.1",
-    "urn:mmrs:auv-tasks:1.0",
-    "urn:mmrs:rover:1.0",
-    "urn:mmrs:survey:1.0",
-    "urn:mmrs:solar:1.0",
-)
 
 
 def used_by(roots, abstract):
@@ -45,10 +20,10 @@ def used_by(roots, abstract):
 
 
 @pytest.fixture(scope="module")
-def uses(taken, read, folder_of, metaclasses):
+def uses(missions, taken, read, folder_of, metaclasses):
     """Return the metaclasses that each example uses, in its files and in what is derived from them."""
     abstract = {metaclass.key for metaclass in metaclasses if metaclass.abstract}
-    roots = {name: [*read(folder_of(name)), taken(name).behaviour] for name in MISSIONS}
+    roots = {name: [*read(folder_of(name)), taken(name).behaviour] for name in missions}
     roots["handwritten"] = read(folder_of("handwritten"))
     return {name: used_by(found, abstract) for name, found in roots.items()}
 
@@ -56,8 +31,9 @@ def uses(taken, read, folder_of, metaclasses):
 @pytest.fixture(scope="module")
 def metaclasses(contributions):
     """Return every metaclass of the languages."""
-    packages = {package.ns_uri: package for package in contributions.languages.packages}
-    return [metaclass for uri in LANGUAGES for metaclass in packages[uri].metaclasses]
+    packages = contributions.languages.packages
+    ours = [package for package in packages if package.ns_uri.startswith("urn:mmrs:")]
+    return [metaclass for package in ours for metaclass in package.metaclasses]
 
 
 def table(uses, metaclasses):

@@ -18,7 +18,6 @@ from mmrs_core.planning.planner import plan
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Serve, Signal, Step, all_steps
 from mmrs_core.simulation.run import simulate
-from mmrs_core.stages import Stages
 
 pytestmark = pytest.mark.together("examples")
 
@@ -113,24 +112,21 @@ def test_the_behaviour_survives_a_file(example, contributions, tmp_path):
         ]
 
 
-def test_the_simulated_run_succeeds_and_its_log_replays(example, run_of):
-    run = run_of(example)
+def test_the_simulated_run_succeeds_and_its_log_replays(example):
+    run = example.run
     assert run.ending.outcome.value == "success"
     result = replay(example.program, run.records)
     assert result.complaints == ()
     assert result.outcome.value == "success"
 
 
-def test_the_simulated_run_lasts_about_as_long_as_planned(example, run_of):
+def test_the_simulated_run_lasts_about_as_long_as_planned(example):
     # Turns are planned for at their longest, and objects wherever they may be.
-    assert 0.75 * example.plan.makespan <= run_of(example).ending.time <= 1.1 * example.plan.makespan
+    assert 0.75 * example.plan.makespan <= example.run.ending.time <= 1.1 * example.plan.makespan
 
 
 def test_the_simulated_run_lasts_as_long_as_mmrs_plan_says(example, contributions):
-    stages = Stages(lambda: example.models, contributions)
-    made = {"scene": example.scene, "plan": example.plan, "program": example.program}
-    vars(stages).update(made, transformed=(example.behaviour, example.trace))
-    run, told = pipeline.simulate(example.program, example.place, contributions), stages.timed
+    run, told = pipeline.simulate(example.program, example.place, contributions), example.timed
     assert told.makespan == pytest.approx(run.ending.time, rel=0.01)
     for robot in told.robots:
         track = run.tracks.get(robot.robot, ())
@@ -142,23 +138,23 @@ def test_the_simulated_run_lasts_as_long_as_mmrs_plan_says(example, contribution
         assert sum(idle, 0.0) < 1.0
 
 
-def test_the_preview_says_when_each_step_is_simulated_to_be_made(taken, contributions):
+def test_the_preview_says_when_each_step_is_simulated_to_be_made(taken):
     example = taken("carbon-dioxide")
-    stages = Stages(lambda: example.models, contributions)
-    made = {"scene": example.scene, "plan": example.plan, "program": example.program}
-    vars(stages).update(made, transformed=(example.behaviour, example.trace))
-    run = pipeline.simulate(example.program, example.place, contributions)
     moves = example.trace.moves()
-    ends = {(each.robot, each.move): each.time for each in run.records if each.label in ("end", "act", "ntf")}
-    for robot in stages.timed.robots:
+    ends = {
+        (each.robot, each.move): each.time
+        for each in example.run.records
+        if each.label in ("end", "act", "ntf")
+    }
+    for robot in example.timed.robots:
         for number, step in enumerate(all_steps(robot.steps)):
             own = moves.get((robot.robot, number))
             if own and step is not robot.steps[-1]:
                 assert step.end == ends[robot.robot, own[-1]]
 
 
-def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):
-    for name, track in run_of(example).tracks.items():
+def test_no_simulated_track_comes_into_a_forbidden_area(example):
+    for name, track in example.run.tracks.items():
         robot = example.scene.robot(name)
         clearance = robot.clearance
         for area in example.scene.kept_from(robot):
@@ -171,11 +167,11 @@ def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):
                 assert hypot(level, above) >= kept - 0.3, (name, area.name, sample)
 
 
-def test_every_robot_that_is_to_return_is_home_at_the_end(example, run_of):
+def test_every_robot_that_is_to_return_is_home_at_the_end(example):
     for robot in example.program.robots:
         if not example.scene.robot(robot.id).return_home:
             continue
-        end = run_of(example).tracks[robot.id][-1].position
+        end = example.run.tracks[robot.id][-1].position
         assert dist(end, robot.home) < 0.5
 
 

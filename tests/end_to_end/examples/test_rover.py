@@ -32,16 +32,16 @@ def way_of(run, robot):
 
 
 @pytest.mark.parametrize("name", ["fire-water basin", "embankment"])
-def test_the_drone_flies_over_what_the_rover_goes_round(yard, run_of, name):
-    run, shape = run_of(yard), shape_of(yard.scene, name)
+def test_the_drone_flies_over_what_the_rover_goes_round(yard, name):
+    run, shape = yard.run, shape_of(yard.scene, name)
     rover = yard.scene.robot("Badger")
     assert way_of(run, "Kestrel").intersects(shape)
     # Half a diagonal of 0.78 m, 0.4 m of position error and 1.2 m to turn in.
     assert way_of(run, "Badger").distance(shape) >= rover.clearance - 1e-3 > 2.3
 
 
-def test_the_rover_wades_through_water_that_is_shallow_enough(yard, run_of):
-    assert way_of(run_of(yard), "Badger").intersects(shape_of(yard.scene, "puddle"))
+def test_the_rover_wades_through_water_that_is_shallow_enough(yard):
+    assert way_of(yard.run, "Badger").intersects(shape_of(yard.scene, "puddle"))
     assert "puddle" not in {area.name for area in yard.scene.areas}
 
 
@@ -56,8 +56,8 @@ def test_a_task_in_the_air_is_refused_by_the_rover_with_the_reason(yard):
     assert yard.scene.refusals["hot spot", "Badger"].startswith("stays on its level at 0.00 m")
 
 
-def test_the_rover_never_leaves_the_ground(yard, run_of):
-    assert {sample.position[2] for sample in run_of(yard).tracks["Badger"]} == {0.0}
+def test_the_rover_never_leaves_the_ground(yard):
+    assert {sample.position[2] for sample in yard.run.tracks["Badger"]} == {0.0}
     assert not any(move.kind in ("TakeOff", "Land") for move in program_of(yard, "Badger").moves)
 
 
@@ -71,8 +71,8 @@ def program_of(yard, name):
     return found
 
 
-def test_shunting_takes_time_in_the_simulation(yard, run_of):
-    track = run_of(yard).tracks["Badger"]
+def test_shunting_takes_time_in_the_simulation(yard):
+    track = yard.run.tracks["Badger"]
     turns = [b.time - a.time for a, b in pairwise(track) if a.position == b.position]
     assert max(turns) > 3.0
 

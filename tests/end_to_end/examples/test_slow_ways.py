@@ -2,8 +2,6 @@
 
 import pytest
 
-from mmrs_core import pipeline
-
 pytestmark = pytest.mark.together("examples")
 
 
@@ -33,8 +31,7 @@ def test_all_other_ways_to_tasks_are_at_cruise(pool):
     assert {move.speed for move in ways} == {None}
 
 
-def test_the_simulated_vehicle_comes_through_the_gate_when_the_plan_says(pool, contributions):
-    run = pipeline.simulate(pool.program, pool.place, contributions)
+def test_the_simulated_vehicle_comes_through_the_gate_when_the_plan_says(pool):
     gate = (
         pool.program.robots[0]
         .moves[next(i for i, move in enumerate(pool.program.robots[0].moves) if move.task == "gate")]
@@ -42,7 +39,7 @@ def test_the_simulated_vehicle_comes_through_the_gate_when_the_plan_says(pool, c
     )
     there = next(
         sample.time
-        for sample in run.tracks["Naiad"]
+        for sample in pool.run.tracks["Naiad"]
         if max(abs(a - b) for a, b in zip((sample.east, sample.north, sample.up), gate, strict=True)) < 1e-3
     )
     assert there == pytest.approx(pool.plan.begins["gate"], abs=0.1)

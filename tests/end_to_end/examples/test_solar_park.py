@@ -88,14 +88,14 @@ def test_nothing_is_recorded_faster_than_images_are_sharp(park):
             assert move.speed * 0.008 <= 0.5 * pixel * (1.0 + 1e-6)
 
 
-def test_an_image_is_taken_of_each_suspected_panel_after_all_rows(park, run_of):
+def test_an_image_is_taken_of_each_suspected_panel_after_all_rows(park):
     moves = {(robot.id, move.id): move for robot in park.program.robots for move in robot.moves}
     looks = [
         record
-        for record in run_of(park).records
+        for record in park.run.records
         if record.label == "act" and moves[record.robot, record.move].task == "hot panels"
     ]
-    rows = [each for each in run_of(park).records if moves[each.robot, each.move].task in ROWS]
+    rows = [each for each in park.run.records if moves[each.robot, each.move].task in ROWS]
     assert len({(record.robot, record.move) for record in looks}) == 3
     assert min(record.time for record in looks) > max(record.time for record in rows if record.label == "act")
 
