@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import acos, atan2, degrees, hypot, pi
 
 from mmrs_core.scene.primitives import Position
+from mmrs_runtime.controllers.geodesy import turn as turn
 
 SPOT = 1e-9
 """Metres in the plane below which one place is above another."""
@@ -14,11 +15,6 @@ def bearing(start: Position, finish: Position) -> float | None:
     """Return the heading from one place to another; None straight up, straight down or on the spot."""
     east, north = finish[0] - start[0], finish[1] - start[1]
     return degrees(atan2(east, north)) % 360.0 if hypot(east, north) > SPOT else None
-
-
-def turn(first: float, last: float) -> float:
-    """Return the degrees to turn from one heading to another, clockwise positive, -180 to 180."""
-    return (last - first + 180.0) % 360.0 - 180.0
 
 
 def turn_at(before: Position, corner: Position, after: Position) -> float:

@@ -50,6 +50,11 @@ def bearing(a: Place, b: Place) -> float:
     return degrees(atan2(east, north)) % 360.0
 
 
+def turn(first: float, last: float) -> float:
+    """Return the degrees to turn from one heading to another, clockwise positive, -180 to 180."""
+    return (last - first + 180.0) % 360.0 - 180.0
+
+
 def between(a: Place, b: Place, part: float) -> Place:
     """Return the position at a fraction of the straight line, 0 at `a` and 1 at `b`."""
     if isinstance(a, Geographic) and isinstance(b, Geographic):

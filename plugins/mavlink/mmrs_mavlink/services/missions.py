@@ -13,6 +13,7 @@ from math import isnan
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.geodesy import turn
 from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link, Message
@@ -137,7 +138,7 @@ def alike(wanted: Item, found: Item, kind: int, keeping: Keeping) -> bool:
 def _close(a: float, b: float, heading: bool) -> bool:
     if isnan(a) or isnan(b):
         return isnan(a) and isnan(b)
-    apart = abs((a - b + 180.0) % 360.0 - 180.0) if heading else abs(a - b)
+    apart = abs(turn(a, b)) if heading else abs(a - b)
     return apart <= 1e-3 * max(1.0, abs(a))
 
 

@@ -14,6 +14,7 @@ from mmrs_mavlink.sitl.autopilot import CURVED, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.commands import ACCEPTED, FAILED, arming_refusal
 from mmrs_mavlink.sitl.items import MISSION
+from mmrs_runtime.controllers.geodesy import turn
 from mmrs_runtime.sights import seen
 
 Message = Any
@@ -113,7 +114,7 @@ def _target(pilot: SimulatedAutopilot) -> Message | None:
 
 
 def _attitude(pilot: SimulatedAutopilot) -> Message:
-    yaw = radians((pilot.body.heading + 180.0) % 360.0 - 180.0)
+    yaw = radians(turn(0.0, pilot.body.heading))
     roll = TUMBLING if pilot.motor_failed and pilot.airborne else 0.0
     return message("attitude", time_boot_ms=milliseconds(pilot), roll=roll, yaw=yaw)
 

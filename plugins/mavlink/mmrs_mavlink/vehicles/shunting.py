@@ -16,7 +16,7 @@ from math import hypot, inf, radians, sin
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.geodesy import bearing, offset
+from mmrs_runtime.controllers.geodesy import bearing, offset, turn
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link, Message
@@ -135,9 +135,7 @@ class Shunting:
     def _aside(self, place: Place) -> float:
         """Return by how many degrees its target is right of where the vehicle looks; negative: left of it."""
         heading = self.telemetry.heading()
-        if heading is None:
-            return 0.0
-        return (bearing(self.telemetry.here(), place) - heading + 180.0) % 360.0 - 180.0
+        return 0.0 if heading is None else turn(heading, bearing(self.telemetry.here(), place))
 
 
 def _speed_and_turn_rate(link: Link, speed: float, rate: float) -> Message:

@@ -6,7 +6,7 @@ from math import atan2, degrees, hypot, inf, nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.geodesy import bearing, distance, offset
+from mmrs_runtime.controllers.geodesy import bearing, distance, offset, turn
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link
@@ -202,7 +202,7 @@ class Steering:
         """Return whether a device without a gimbal points elsewhere by now than at its target."""
         if look is None or look.gimbal or self._yaw is None:
             return False
-        return _angle(self._yaw, _yaw(self._telemetry.here(), look)) >= CLOSE_DEGREES
+        return abs(turn(self._yaw, _yaw(self._telemetry.here(), look))) >= CLOSE_DEGREES
 
     def _send_target(self, place: Place, yaw: float) -> None:
         self._mode_control.guidance.aim(place, radians(yaw), self._speed, self._turn_rate)
@@ -220,7 +220,7 @@ class Steering:
         return begun is not None and (away <= ABREAST_METRES or _is_past(begun, here, place))
 
     def _faces(self, wanted: float) -> bool:
-        return _angle(self._heading(), wanted) < CLOSE_DEGREES
+        return abs(turn(self._heading(), wanted)) < CLOSE_DEGREES
 
     def _heading(self) -> float:
         reported = self._telemetry.heading()
@@ -231,11 +231,6 @@ def _is_past(begun: Place, here: Place, place: Place) -> bool:
     """Return whether a vehicle on a leg from `begun` is abreast of its end, or has passed it."""
     leg, left = offset(begun, place), offset(here, place)
     return sum(p * q for p, q in zip(leg, left, strict=True)) <= 0.0
-
-
-def _angle(a: float, b: float) -> float:
-    """Return the degrees between two headings."""
-    return abs((a - b + 180.0) % 360.0 - 180.0)
 
 
 def _yaw(here: Place, look: Look) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, hypot, radians, sin
 
+from mmrs_runtime.controllers.geodesy import turn
+
 NEAR, NEAR_DEPTH, NEAR_HEADING = 0.3, 0.15, 4.0
 """Metres, metres and degrees within which a goal is reached."""
 
@@ -133,7 +135,7 @@ class StickSteering:
     def _reckon(self, now: float, heading: float, depth: float) -> None:
         if self._time is not None:
             way = self._forward * self._full_speed * max(0.0, now - self._time)
-            middle = radians(self.heading + _turn(self.heading, heading) / 2.0)
+            middle = radians(self.heading + turn(self.heading, heading) / 2.0)
             self.east, self.north = self.east + way * sin(middle), self.north + way * cos(middle)
         self._time, self.heading, self.depth = now, heading, depth
 
@@ -143,7 +145,7 @@ class StickSteering:
         left = self._left(goal)
         if left is not None and left[0] > NEAR:
             distance, course = left
-            off = _turn(self.heading, course)
+            off = turn(self.heading, course)
             speed = min(goal.speed, max(0.15, SLOW_DOWN * distance))
             ahead = min(1.0, speed / self._full_speed) if abs(off) <= STRAIGHT else 0.0
             return replace(sticks, forward=max(ahead, LEAST) if ahead else 0.0, turn=_to_turn(off))
@@ -159,13 +161,8 @@ class StickSteering:
 
     def _off(self, goal: Goal) -> float | None:
         """Return by how many degrees it is off the goal's heading; None where it is not."""
-        off = 0.0 if goal.heading is None else _turn(self.heading, goal.heading)
+        off = 0.0 if goal.heading is None else turn(self.heading, goal.heading)
         return off if abs(off) > NEAR_HEADING else None
-
-
-def _turn(one: float, other: float) -> float:
-    """Return the shorter turn from one heading to another, -180 to 180 degrees."""
-    return (other - one + 180.0) % 360.0 - 180.0
 
 
 def _to_turn(off: float) -> float:
