@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Mapping, Sequence
-from math import inf
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.controllers import vocabulary as words
@@ -14,10 +13,10 @@ from mmrs_runtime.controllers.running import run_controllers
 from mmrs_runtime.controllers.user_functions import Condition, Locator
 from mmrs_runtime.engine.connecting import Live
 from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
-from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.vehicle import Position
 
-from .driving.equipment import Equipment, Guard, Precautions, RadioLink
+from .driving.equipment import Equipment, Guard, Precautions
 from .driving.threaded import ThreadedVehicle
 from .options import Reach, add_reach, reach_of
 from .program import Place, Robot
@@ -26,6 +25,7 @@ from .vehicles.dry import DryVehicle
 if TYPE_CHECKING:
     from mmrs_runtime.ports import Port
 
+    from .linked import RadioLink
     from .links.radios import Radios
 
 
@@ -98,14 +98,14 @@ class MavlinkDriver(Driver):
         outfit, guard = self._outfit, Guard()
         options, radio = outfit.options, None
         if self._radios is not None:
-            radio = self._radio(robot, live, guard, box, self._radios)
+            radio = self._radio(robot, live, box, self._radios)
+            radio.link.guard = guard
         equipment = Equipment(
             radio.vehicle if radio is not None else DryVehicle(options.clock, robot.home, guard),
             guard,
             options.clock,
             _from(robot.home),
-            live.say,
-            live.wake,
+            live,
             radio=radio,
             locators=outfit.locators,
             box=box,
@@ -113,25 +113,30 @@ class MavlinkDriver(Driver):
             fence=self._reach.fence,
             precautions=Precautions(self._reach.device_check, self._reach.battery_check, self._reach.tried),
             dry=options.dry,
-            records=live.records,
             let_go=lambda: outfit.rehearsal.forget(robot.id),
         )
         return ThreadedVehicle(robot, equipment)
 
-    def _radio(self, robot: Robot, live: Live, guard: Guard, box: BlackBox, radios: Radios) -> RadioLink:
-        from .linked import at_end_of  # MAVLink's library need not be there for a dry run
+    def _radio(self, robot: Robot, live: Live, box: BlackBox, radios: Radios) -> RadioLink:
+        from .linked import reached  # MAVLink's library need not be there for a dry run
         from .services.satellites import attended
-        from .vehicles.recognition import system_of
 
         options, reach = self._outfit.options, self._reach
         url = reach.urls[robot.id]
         link = radios.open(url, reach.systems[robot.id])
-        link.guard = guard
-        home_tolerance = inf if live.resumed else options.home_tolerance
-        vehicle = at_end_of(link, robot, reach.acceptance, home_tolerance, live.say, box, options.clock)
         self._outfit.rehearsal.attend(robot.id, attended(link))
-        system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
-        return RadioLink(url, link, vehicle, radios, options.patience * options.clock.speedup, system)
+        return reached(
+            url,
+            link,
+            robot,
+            radios,
+            live,
+            box,
+            options.clock,
+            acceptance=reach.acceptance,
+            home_tolerance=options.home_tolerance,
+            patience=options.patience,
+        )
 
 
 def _from(home: Place) -> Callable[[Place], Position]:

@@ -2,29 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
 
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.engine.connecting import Live
 from mmrs_runtime.records.blackbox import BlackBox
 
 from .links.link import Link
+from .links.radios import Radios
 from .program import Geographic, Robot
 from .records.recording import Recording
 from .vehicles.mavlink_vehicle import MavlinkVehicle
+from .vehicles.recognition import system_of
 
 
-def at_end_of(
+@dataclass(frozen=True, slots=True)
+class RadioLink:
+    """How a vehicle that speaks MAVLink is reached.
+
+    Attributes:
+        patience: seconds of the run to wait for its first message.
+        system: of the vehicle when the run began; 0: unknown.
+    """
+
+    url: str
+    link: Link
+    vehicle: MavlinkVehicle
+    radios: Radios
+    patience: float
+    system: int = 0
+
+
+def reached(
+    url: str,
     link: Link,
     robot: Robot,
-    acceptance: float | None,
-    home_tolerance: float,
-    tell: Callable[[str], None],
+    radios: Radios,
+    live: Live,
     box: BlackBox | None,
     clock: Clock,
-) -> MavlinkVehicle:
-    """Return the vehicle of a robot at the end of an open link; the box keeps all that goes over it.
+    *,
+    acceptance: float | None,
+    home_tolerance: float,
+    patience: float,
+) -> RadioLink:
+    """Return how the vehicle of a robot at the end of an open link is reached.
 
-    The other arguments are those of `MavlinkVehicle`.
+    Args:
+        box: keeps all that goes over the link.
+        acceptance, home_tolerance: as in `MavlinkVehicle`; where a run is resumed, it may be anywhere.
+        patience: real seconds to wait for its first message.
     """
     vehicle = MavlinkVehicle(
         link,
@@ -32,9 +60,11 @@ def at_end_of(
         robot.home,
         acceptance=acceptance,
         travel=robot.travel,
-        home_tolerance=home_tolerance,
-        tell=tell,
+        home_tolerance=inf if live.resumed else home_tolerance,
+        tell=live.say,
     )
     if box is not None:
         link.observe(Recording(box, clock, vehicle.state, geographic=isinstance(robot.home, Geographic)))
-    return vehicle
+    path = live.box_path(robot.id)
+    system = system_of(path) if live.resumed and path is not None else 0
+    return RadioLink(url, link, vehicle, radios, patience * clock.speedup, system)

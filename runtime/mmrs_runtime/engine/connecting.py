@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..clock import SIGNAL_SECONDS
+from ..records.blackbox import BlackBox, black_box_path
+from ..records.steps import log_name
 
 if TYPE_CHECKING:
     from ..records.steps import StepRecord
@@ -57,6 +59,15 @@ class Live:
     def begun(self) -> str:
         """Return the move that it had begun then; empty where it had ended its last one."""
         return self.records[-1].move if self.records and self.records[-1].label == "begin" else ""
+
+    def box_path(self, robot: str) -> Path | None:
+        """Return where the black box of a robot lies; None where no logs are kept."""
+        return None if self.folder is None else black_box_path(self.folder / log_name(robot))
+
+    def black_box(self, robot: str) -> BlackBox | None:
+        """Return the black box of a robot, to be written; None where no logs are kept."""
+        path = self.box_path(robot)
+        return None if path is None else BlackBox(path, self.run, robot, self.clock.now, say=self.say)
 
 
 def let_go(robots: Mapping[str, Vehicle]) -> None:

@@ -16,8 +16,6 @@ from mmrs_runtime.controllers.box_entries import PROCESS
 from mmrs_runtime.engine.clocks import FollowingClock, RealClock
 from mmrs_runtime.injection import Rehearsal, injections, noted_in
 from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
-from mmrs_runtime.records.blackbox import BlackBox, black_box_path
-from mmrs_runtime.records.steps import log_name
 
 SHARED = "injected faults of CAN buses"
 
@@ -45,7 +43,7 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     eyes = _eyes(given, options)
     sight = None if eyes is None or options.objects == "expected" else eyes.place
     orders = BehaviourOrders(given, sheet, Waters(given.program.frame.surface), sight)
-    faults, box = faults_of(given, live, options.inject), _box(given, live)
+    faults, box = faults_of(given, live, options.inject), live.black_box(robot)
     if faults is not None:
         faults.record(robot, noted_in(box))
     try:
@@ -92,13 +90,6 @@ def faults_of(given: VehicleInput, live: Live, text: str) -> Rehearsal | None:
     made = live.shared[SHARED] = Rehearsal(asked, FollowingClock(live.clock), live.announce)
     made.start()
     return made
-
-
-def _box(given: VehicleInput, live: Live) -> BlackBox | None:
-    if live.folder is None:
-        return None
-    path = black_box_path(live.folder / log_name(given.robot.id))
-    return BlackBox(path, live.run, given.robot.id, live.clock.now, say=live.say)
 
 
 def _eyes(given: VehicleInput, options: Connecting) -> Detections | None:

@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.user_functions import Locator
+from mmrs_runtime.engine.connecting import Live
 from mmrs_runtime.records.blackbox import BlackBox
-from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.vehicle import Position
 
 from ..program import Place
 from ..vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from ..links.link import Link
-    from ..links.radios import Radios
-    from ..vehicles.mavlink_vehicle import MavlinkVehicle
+    from ..linked import RadioLink
 
 
 class Guard:
@@ -31,23 +29,6 @@ class Guard:
     def __call__(self) -> None:
         """Raise what is to end the wait."""
         self.check()
-
-
-@dataclass(frozen=True, slots=True)
-class RadioLink:
-    """How a vehicle that speaks MAVLink is reached.
-
-    Attributes:
-        patience: seconds of the run to wait for its first message.
-        system: of the vehicle when the run began; 0: unknown.
-    """
-
-    url: str
-    link: Link
-    vehicle: MavlinkVehicle
-    radios: Radios
-    patience: float
-    system: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +54,7 @@ class Equipment:
         guard: that the vehicle calls in its waits.
         radio: None where the vehicle is reached otherwise, or there is none.
         position: of a place: east, north, up.
+        live: of the run; where it holds steps, the vehicle may be in the air.
         joules: capacity of its batteries; None where unknown.
         locators: find objects, by description.
         box: None where no logs are kept.
@@ -80,7 +62,6 @@ class Equipment:
         fence: whether forbidden areas are uploaded.
         precautions: before it takes off.
         dry: whether there is no vehicle.
-        records: the steps that it made before; the vehicle may be in the air then.
         start: to be called once the robot gets ready, for injected faults.
         let_go: to be called before the link is closed.
     """
@@ -89,8 +70,7 @@ class Equipment:
     guard: Guard
     clock: Clock
     position: Callable[[Place], Position]
-    say: Callable[[str], None]
-    wake: Callable[[], None]
+    live: Live
     radio: RadioLink | None = None
     joules: float | None = None
     locators: Mapping[str, Locator] = field(default_factory=dict)
@@ -99,22 +79,5 @@ class Equipment:
     fence: bool = True
     precautions: Precautions = Precautions()
     dry: bool = False
-    records: tuple[StepRecord, ...] = ()
     start: Callable[[], None] = lambda: None
     let_go: Callable[[], None] = lambda: None
-
-    @property
-    def resumed(self) -> bool:
-        """Return whether the run was broken off before."""
-        return bool(self.records)
-
-    @property
-    def passed(self) -> tuple[str, ...]:
-        """Return the moves that the robot had ended by then, in order."""
-        return tuple(each.move for each in self.records if each.label == "end")
-
-    @property
-    def begun(self) -> str:
-        """Return the move that it had begun and not ended; empty: none."""
-        last = self.records[-1] if self.records else None
-        return last.move if last is not None and last.label == "begin" else ""

@@ -42,7 +42,7 @@ class Setup:
     ) -> None:
         """Keep the parts; `note` writes into the black box."""
         self.is_known = self.is_done = self._restarted = False
-        self._robot, self._with = robot, equipment
+        self._robot, self._with, self._live = robot, equipment, equipment.live
         self._uploads, self._watch, self._lost_link = uploads, watch, lost_link
         self._way, self._note = way, note
 
@@ -56,7 +56,7 @@ class Setup:
         if radio is None:
             self._note("start", start_of(self._robot, None, "pymavlink"))
             return
-        self._with.say(f"waits for a vehicle at {radio.url}")
+        self._live.say(f"waits for a vehicle at {radio.url}")
         from ..vehicles.recognition import firmware_of  # needs MAVLink's library
 
         try:
@@ -74,14 +74,14 @@ class Setup:
         vehicle = self._with.vehicle
         self._watch.renew()
         self._recognise()
-        if self._with.resumed:
+        if self._live.resumed:
             vehicle.hold()
         self._lost_link.tell()
-        equip(self._robot, vehicle, self._uploads, self._with.say)
+        equip(self._robot, vehicle, self._uploads, self._live.say)
         self._inspect()
         self.is_done = True
         if vehicle.state().energy is None and not self._with.dry:
-            self._with.say("does not report its battery: a low battery will go unnoticed")
+            self._live.say("does not report its battery: a low battery will go unnoticed")
         self._watch.forewarn()
 
     def take_up(self) -> None:
@@ -114,7 +114,7 @@ class Setup:
         from ..vehicles.inspection import inspect_devices
 
         link, vehicle, precautions = radio.link, radio.vehicle, self._with.precautions
-        at_start = not (self.is_done or self._with.resumed)
+        at_start = not (self.is_done or self._live.resumed)
         devices = inspect_devices(link, vehicle, self._robot, precautions.tried)
         batteries = inspect_batteries(link, vehicle.telemetry, self._robot, at_start=at_start)
         refused: list[str] = []
@@ -123,18 +123,18 @@ class Setup:
             (batteries, "battery-check", precautions.battery),
         ):
             for line in found.lines:
-                self._with.say(line)
+                self._live.say(line)
             if found.defects and refuses:
                 refused += [*found.defects, f"{option}=no takes off all the same"]
             else:
                 for defect in found.defects:
-                    self._with.say(f"{defect} (warning: {option}=no)")
+                    self._live.say(f"{defect} (warning: {option}=no)")
         if refused:
             raise RefusedError("; ".join(refused))
 
     def _recognise(self) -> None:
         """Refuse a vehicle that is not the robot's, or under external control, before it is touched."""
-        resumed, vehicle = self._with.resumed, self._with.vehicle
+        resumed, vehicle = self._live.resumed, self._with.vehicle
         first = resumed and not self.is_done
         if (radio := self._with.radio) is not None:
             from ..vehicles.recognition import recognise  # needs MAVLink's library
@@ -144,12 +144,12 @@ class Setup:
                 radio.vehicle,
                 self._robot,
                 inf if resumed and vehicle.state().armed else self._with.home_tolerance,
-                self._way.starts(self._with.passed, self._with.begun) if first else (vehicle.start,),
+                self._way.starts(self._live.passed, self._live.begun) if first else (vehicle.start,),
                 under_way=resumed,
                 system=radio.system,
             )
         if first:
-            self._way.know(self._with.passed, self._with.begun)
+            self._way.know(self._live.passed, self._live.begun)
         self.is_known = True
 
 

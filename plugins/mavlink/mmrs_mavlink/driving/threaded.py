@@ -47,8 +47,8 @@ class ThreadedVehicle(Vehicle):
     def __init__(self, robot: Robot, equipment: Equipment) -> None:
         """Receive from the vehicle; no command is sent before it is to get ready."""
         robot = robot if equipment.dry else robot.judged
-        self._robot, self._with = robot, equipment
-        self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
+        self._robot, self._with, self._live = robot, equipment, equipment.live
+        self._lost_link = LostLink(robot, equipment.vehicle, self._live.say)
         self._watch = self._new_watch()
         self._link = None if equipment.radio is None else equipment.radio.link
         self._moves = Moves(
@@ -60,7 +60,7 @@ class ThreadedVehicle(Vehicle):
             self._come_to,
             equipment.guard,
         )
-        self._cameras = Cameras(robot, equipment.records)
+        self._cameras = Cameras(robot, self._live.records)
         self._way = WayBack(robot, self._moves, equipment.vehicle, self._cameras, equipment.home_tolerance)
         uploads = uploads_of(robot, fenced=equipment.fence)
         self._flights = uploads.flights
@@ -71,7 +71,7 @@ class ThreadedVehicle(Vehicle):
         self._under_way: tuple[str, ...] = ()
         self._tolerance = equipment.home_tolerance
         self._response = Response(
-            robot, equipment.vehicle, self._watch, self._moves, equipment.say, self._tolerance
+            robot, equipment.vehicle, self._watch, self._moves, self._live.say, self._tolerance
         )
         self._reception = Reception(self._link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
@@ -82,7 +82,7 @@ class ThreadedVehicle(Vehicle):
         self._worker = Worker(
             f"robot {robot.id!r}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
         )
-        self._worker.changed = equipment.wake
+        self._worker.changed = self._live.wake
         self._worker.faulty = self._come_back
         self._worker.failed = self._response.failed = self._note_failure
         equipment.guard.check = self._worker.guard
@@ -149,7 +149,7 @@ class ThreadedVehicle(Vehicle):
         if found.event != DEVICE_SILENT and not (found.event == BATTERY_LOW and charging):
             return False
         self._note_decision(found.event, str(found), CONTINUE)
-        self._with.say(f"carries on although {found}")
+        self._live.say(f"carries on although {found}")
         self._worker.forgive(found)
         return True
 
@@ -284,7 +284,7 @@ class ThreadedVehicle(Vehicle):
         self._response.forget()
         self._move = begun or (passed[-1] if passed else "")
         if self._move:
-            self._with.say(f"continues {'with' if begun else 'after'} {self._move!r}")
+            self._live.say(f"continues {'with' if begun else 'after'} {self._move!r}")
             self._note_decision("resume", f"its log ends at {self._move}", "goes the way it came")
         job = self._way.job(passed, begun)
         job.first(self._setup.take_up)
@@ -316,7 +316,7 @@ class ThreadedVehicle(Vehicle):
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""
         if self._with.box is not None:
-            move = self._move or self._with.begun or self._robot.start
+            move = self._move or self._live.begun or self._robot.start
             self._with.box.write(kind, **{"move": move, **content})
 
     def close(self) -> None:
@@ -330,7 +330,7 @@ class ThreadedVehicle(Vehicle):
                 self.note("counted", {"frames": dict(link.dropped)})
             if link.garbled:
                 reasons = (f"{reason} ({frames})" for reason, frames in sorted(link.dropped.items()))
-                self._with.say(f"frames on the link that were not used: {', '.join(reasons)}")
+                self._live.say(f"frames on the link that were not used: {', '.join(reasons)}")
             link.close()
         if self._with.box is not None:
             self._with.box.close()
@@ -347,7 +347,7 @@ class ThreadedVehicle(Vehicle):
             watch.begin(radio.link, radio.vehicle)
         watch.current = lambda: self._lost_link.policies
         watch.track = lambda: self._moves.track
-        watch.decide, watch.say = self._note_decision, self._with.say
+        watch.decide, watch.say = self._note_decision, self._live.say
         return watch
 
     def _note_decision(self, what: str, why: str, response: str) -> None:
@@ -363,20 +363,20 @@ class ThreadedVehicle(Vehicle):
         if self._watch.answers_alone():
             self._left = lost
             return
-        self._with.say(f"link restored, in mode {state.mode}, and no failsafe has acted: {name}")
+        self._live.say(f"link restored, in mode {state.mode}, and no failsafe has acted: {name}")
         job = self._response.begin(name, lost, self._note_decision, restored=True)
         if job is not None:
-            job.append(lambda: self._with.say(f"has done {name}"))
+            job.append(lambda: self._live.say(f"has done {name}"))
             self._worker.instead(lost, job)
 
     def _note_change(self, why: str) -> None:
         self._battery_change = why
-        self._with.wake()
+        self._live.wake()
 
     def _note_failure(self, error: BaseException) -> None:
         """Report an error of the program itself, and record it in the black box."""
         trace = "".join(format_exception(error))
-        self._with.say(f"the program itself fails: {trace}")
+        self._live.say(f"the program itself fails: {trace}")
         self.note("failed", {"error": repr(error), "trace": trace})
 
     def _look(self) -> None:
@@ -415,7 +415,7 @@ class ThreadedVehicle(Vehicle):
         while not self._worker.done and self._worker.fault is None and time.monotonic() < until:
             time.sleep(0.01)
         if not self._worker.done:
-            self._with.say("may not stay where it is when this program has ended")
+            self._live.say("may not stay where it is when this program has ended")
 
     def _begins_sortie(self, move: str) -> bool:
         """Return whether the robot leaves the ground, or its place of charging, with a move."""
@@ -429,7 +429,7 @@ class ThreadedVehicle(Vehicle):
 
     def _pass(self, move: str) -> None:
         self._passed.add(move)
-        self._with.wake()
+        self._live.wake()
 
     def _come_to(self, place: Place) -> None:
         if self._with.dry and self._with.box is not None:
@@ -445,7 +445,7 @@ class ThreadedVehicle(Vehicle):
             self.reported = {"name": name, "content": dict(content)}
         self.note(kind, {"name": name, "content": dict(content), "place": place})
         if kind == "text":
-            self._with.say(f"{name}: {content['text']}")
+            self._live.say(f"{name}: {content['text']}")
             return
         named = f" '{name}'" if name else ""
-        self._with.say(f"{kind}{named}: {', '.join(f'{key} {value}' for key, value in content.items())}")
+        self._live.say(f"{kind}{named}: {', '.join(f'{key} {value}' for key, value in content.items())}")

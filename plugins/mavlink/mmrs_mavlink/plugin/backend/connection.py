@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf
 from pathlib import Path
 from typing import cast
 
@@ -20,9 +19,9 @@ from mmrs_core.generation.python.program import built, objects_in
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.scene import Frame, Position
 from mmrs_mavlink import program as words
-from mmrs_mavlink.driving.equipment import Equipment, Guard, Precautions, RadioLink
+from mmrs_mavlink.driving.equipment import Equipment, Guard, Precautions
 from mmrs_mavlink.driving.threaded import ThreadedVehicle
-from mmrs_mavlink.linked import at_end_of
+from mmrs_mavlink.linked import reached
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import address_of, split_system
 from mmrs_mavlink.links.radios import Radios
@@ -34,15 +33,12 @@ from mmrs_mavlink.plugin.context import VehicleContext, context_of
 from mmrs_mavlink.plugin.controllers import DRIVER, MAVLINK_PYTHON, robot_of
 from mmrs_mavlink.program import Action, Geographic, Place, Robot
 from mmrs_mavlink.services.satellites import attended
-from mmrs_mavlink.vehicles.recognition import system_of
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.user_functions import Locator, where_expected
 from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.faults import FaultError
 from mmrs_runtime.injection import Rehearsal, injections, noted_in
 from mmrs_runtime.ports import Port
-from mmrs_runtime.records.blackbox import BlackBox, black_box_path
-from mmrs_runtime.records.steps import log_name
 
 SHARED = "mavlink"
 
@@ -207,34 +203,37 @@ def _split(text: str) -> tuple[str, int]:
 def _equipment(
     given: VehicleInput, live: Live, context: VehicleContext, program: Robot, fleet: Fleet, link: Link
 ) -> Equipment:
-    options = link_options(given.options)
-    home_tolerance = inf if live.resumed else options.home_tolerance
-    box = _box(given, live, fleet.clock)
-    vehicle = at_end_of(link, program, options.acceptance, home_tolerance, live.say, box, fleet.clock)
+    options, box = link_options(given.options), live.black_box(given.robot.id)
+    radio = reached(
+        _url(given, live)[0],
+        link,
+        program,
+        fleet.radios,
+        live,
+        box,
+        fleet.clock,
+        acceptance=options.acceptance,
+        home_tolerance=options.home_tolerance,
+        patience=options.patience,
+    )
     home = given.robot.home or (0.0, 0.0, 0.0)
     fleet.rehearsal.record(given.robot.id, noted_in(box))
     fleet.rehearsal.attend(given.robot.id, attended(link))
     locators: dict[str, Locator] = {each: where_expected for each in objects_in(given.robot)}
-    joules = sum(battery.energy for battery in given.type.batteries) or None
-    guard = Guard()
-    link.guard = guard
-    patience = options.patience * fleet.clock.speedup
-    url, system = _url(given, live)[0], _system_before(given, live)
+    guard = link.guard = Guard()
     return Equipment(
-        vehicle,
+        radio.vehicle,
         guard,
         fleet.clock,
         RobotFrame(given.program.frame, home, context.zero).position,
-        live.say,
-        live.wake,
-        radio=RadioLink(url, link, vehicle, fleet.radios, patience, system),
-        joules=joules,
+        live,
+        radio=radio,
+        joules=sum(battery.energy for battery in given.type.batteries) or None,
         locators=locators,
         box=box,
         home_tolerance=options.home_tolerance,
         fence=options.fence,
         precautions=Precautions(options.device_check, options.battery_check, options.try_devices),
-        records=live.records,
         start=_once(fleet.rehearsal.start, live.shared),
         let_go=lambda: fleet.rehearsal.forget(given.robot.id),
     )
@@ -247,16 +246,3 @@ def _once(begin: Callable[[], None], shared: dict[str, object]) -> Callable[[], 
             begin()
 
     return start
-
-
-def _system_before(given: VehicleInput, live: Live) -> int:
-    if not live.resumed or live.folder is None:
-        return 0
-    return system_of(black_box_path(live.folder / log_name(given.robot.id)))
-
-
-def _box(given: VehicleInput, live: Live, clock: Clock) -> BlackBox | None:
-    if live.folder is None:
-        return None
-    path = black_box_path(live.folder / log_name(given.robot.id))
-    return BlackBox(path, live.run, given.robot.id, clock.now, say=live.say)

@@ -24,8 +24,6 @@ from mmrs_runtime.controllers.box_entries import FIX_SECONDS, PROCESS, fix
 from mmrs_runtime.controllers.state import State, status_of
 from mmrs_runtime.controllers.vocabulary import Local
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
-from mmrs_runtime.records.blackbox import BlackBox, black_box_path
-from mmrs_runtime.records.steps import log_name
 from mmrs_runtime.vehicle import Vehicle
 
 UNANSWERED = 60.0
@@ -62,10 +60,7 @@ class ManualRobot(Vehicle):
         self._autopilot = StickAutopilot(link, self._ended.is_set, reserve, under_way=resumed)
         self._policies = (*context.robot.policies, *given.policies)
         self._troubles = Troubles(self._autopilot, self._policies)
-        self._box: BlackBox | None = None
-        if live.folder is not None:
-            path = black_box_path(live.folder / log_name(given.robot.id))
-            self._box = BlackBox(path, live.run, given.robot.id, live.clock.now, say=live.say)
+        self._box = live.black_box(given.robot.id)
         self._fixed, self._plan = -inf, given.program.fingerprint
         self._thread: threading.Thread | None = None
         self._own: Fault | None = None
