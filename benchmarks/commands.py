@@ -27,6 +27,7 @@ from mmrs_multicopter.testing import quad, robot_program, take_off
 from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.programs import move, program
@@ -79,9 +80,7 @@ def behaviour() -> Program:
 def hovering() -> Iterator[Path]:
     """Have the interpreter fly a robot until the context ends; give the folder of its logs."""
     made, port, control = behaviour(), free_port(), Orders()
-    inputs = inputs_of(
-        made, types={"Quad": quad()}, robot_kinds={}, move_kinds={}, options={}, environment={}, areas=()
-    )
+    inputs = inputs_of(TargetInput(made, {"Quad": quad()}, {}, {}), {})
     with tempfile.TemporaryDirectory() as name, SimulatedVehicle(port, Settings(energy=1e6)) as vehicle:
         folder = Path(name)
         live_run = replace(

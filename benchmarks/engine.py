@@ -27,6 +27,7 @@ from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
 
 from mmrs_core.behaviour.program import Move, RobotProgram
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import Policy
 from mmrs_core.simulation.run import simulate
 from mmrs_core.simulation.simulation import SIMULATION
@@ -148,14 +149,11 @@ def engine(durations: Durations, folder: Path) -> Callable[[], str]:
 
     def run() -> str:
         with LogWriter(folder, synced=False) as log:
-            return simulate(
-                fleet,
-                backend=SIMULATION,
-                types={ROBOT_TYPE: robot_type(lifetime=1e6)},
-                robot_kinds={PLAIN_ROBOT.metaclass: PLAIN_ROBOT},
-                move_kinds={kind.metaclass: kind for kind in MOVE_KINDS},
-                terms=Terms(observe=log.write, steps=sys.maxsize),
-            ).ending.outcome.value
+            types = {ROBOT_TYPE: robot_type(lifetime=1e6)}
+            kinds = {kind.metaclass: kind for kind in MOVE_KINDS}
+            given = TargetInput(fleet, types, {PLAIN_ROBOT.metaclass: PLAIN_ROBOT}, kinds)
+            terms = Terms(observe=log.write, steps=sys.maxsize)
+            return simulate(given, SIMULATION, terms=terms).ending.outcome.value
 
     return run
 

@@ -208,6 +208,20 @@ def refusals(verdicts: Iterable[Verdict], program: Program) -> tuple[Verdict, ..
     return refuses(verdicts, program.accepted_unknowns)
 
 
+def input_of(program: Program, place: BehaviourContext, contributions: Contributions) -> TargetInput:
+    """Return what targets and vehicles may use of a behaviour."""
+    return TargetInput(
+        program=program,
+        types=place.types,
+        robot_kinds=contributions.robot_kinds,
+        move_kinds=contributions.move_kinds,
+        areas=place.areas or (),
+        extensions=contributions.extensions,
+        environment=place.environment or {},
+        elements=place.elements,
+    )
+
+
 def render(
     program: Program,
     place: BehaviourContext,
@@ -237,16 +251,7 @@ def render(
     from mmrs_core.generation.render import render as rendered
 
     chosen = _named("target", target, contributions.targets)
-    given = TargetInput(
-        program=program,
-        types=place.types,
-        robot_kinds=contributions.robot_kinds,
-        move_kinds=contributions.move_kinds,
-        areas=place.areas or (),
-        extensions=contributions.extensions,
-        environment=place.environment or {},
-        elements=place.elements,
-    )
+    given = input_of(program, place, contributions)
     provider = contributions.distribution_of("targets", chosen)
     overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None
     try:
@@ -320,16 +325,10 @@ def simulate(
     from mmrs_runtime.engine.terms import Terms
 
     return simulated(
-        program,
-        backend=backend_for(program, contributions, backend, own_backends or {}),
+        input_of(program, place, contributions),
+        backend_for(program, contributions, backend, own_backends or {}),
         options=options,
-        types=place.types,
-        robot_kinds=contributions.robot_kinds,
-        move_kinds=contributions.move_kinds,
         conditions=conditions_for(program, contributions, assume or {}, asks=False),
-        environment=place.environment,
-        areas=place.areas or (),
-        elements=place.elements,
         terms=Terms(observe=observe),
     )
 
@@ -353,17 +352,7 @@ def inputs_of(
     """
     from mmrs_core.simulation.run import inputs_of as found_inputs
 
-    found = found_inputs(
-        program,
-        types=place.types,
-        robot_kinds=contributions.robot_kinds,
-        move_kinds=contributions.move_kinds,
-        options=options or {},
-        environment=place.environment or {},
-        areas=place.areas or (),
-        elements=place.elements,
-        extensions=contributions.extensions,
-    )
+    found = found_inputs(input_of(program, place, contributions), options or {})
     return {id: each for id, each in found.items() if robots is None or id in robots}
 
 

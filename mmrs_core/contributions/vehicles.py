@@ -9,14 +9,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_runtime.engine.connecting import Live as Live
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.program import Action, Program, RobotProgram
+    from mmrs_core.behaviour.program import Action, RobotProgram
     from mmrs_core.contributions.execution import Sample
-    from mmrs_core.contributions.hooks import Extensions
-    from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.scene import Area, Name, Part, Policy, RobotType
+    from mmrs_core.scene import Policy, RobotType
     from mmrs_runtime.vehicle import Vehicle
 
 
@@ -34,34 +33,22 @@ class Recorder(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleInput:
-    """All that a vehicle may use.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleInput(TargetInput):
+    """All that a vehicle may use: what a target may, and what is of its robot.
 
     Attributes:
         options: as in ``--backend-option``, those of this robot; `read_options` of
             `mmrs_core.contributions.backend_options` reads them into a dataclass.
         policies: of the robot, in the order in which they go: the first for an event counts.
-        areas: of the context as drawn, and those that its elements make; empty where none was given.
         live: of a run in real time; None in simulated time.
-        extensions: what plug-ins contribute by hooks of plug-ins, by `Hook.sort`, then by key.
-        types: of all robots, by name, as far as they are known.
-        elements: context elements of plug-ins; empty where no context was given.
     """
 
-    program: Program
     robot: RobotProgram
     type: RobotType
-    robot_kinds: Mapping[Name, RobotKind]
-    move_kinds: Mapping[Name, MoveKind]
-    environment: Mapping[str, float]
-    options: Mapping[str, str]
+    options: Mapping[str, str] = field(default_factory=dict)
     policies: tuple[Policy, ...] = ()
-    areas: tuple[Area, ...] = ()
     live: Live | None = None
-    extensions: Extensions = field(default_factory=dict)
-    types: Mapping[str, RobotType] = field(default_factory=dict)
-    elements: tuple[Part, ...] = ()
 
 
 Check = Callable[[Mapping[str, Mapping[str, str]], Mapping[str, str]], Iterable[str]]

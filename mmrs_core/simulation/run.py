@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Sample
-from mmrs_core.contributions.hooks import Extensions
-from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
+from mmrs_core.contributions.rules import RobotKind, robot_kind_of
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleInput
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.naming import nearest
-from mmrs_core.scene import Area, Name, Part, Policy, RobotType
+from mmrs_core.scene import Name, Policy, RobotType
 from mmrs_runtime.engine.clocks import SimulatedClock
 from mmrs_runtime.engine.run import run
 from mmrs_runtime.engine.terms import TO_THE_END, Ending, Terms
@@ -41,31 +41,21 @@ class SimulatedRun:
 
 
 def simulate(
-    program: Program,
-    *,
+    given: TargetInput,
     backend: VehicleFactory,
-    types: Mapping[str, RobotType],
-    robot_kinds: Mapping[Name, RobotKind],
-    move_kinds: Mapping[Name, MoveKind],
+    *,
     options: Mapping[str, str] | None = None,
     conditions: Mapping[str, Condition] | None = None,
-    environment: Mapping[str, float] | None = None,
-    areas: tuple[Area, ...] = (),
-    elements: tuple[Part, ...] = (),
     terms: Terms = TO_THE_END,
 ) -> SimulatedRun:
     """Return the simulated run of a behaviour; the same input gives the same run.
 
     Args:
-        program: the behaviour.
+        given: the behaviour, in still air and water unless the environment defines others; robots flee to
+            its emergency areas.
         backend: what moves the robots, in simulated time.
-        types: robot types by name.
-        robot_kinds, move_kinds: by metaclass.
         options: of the backend.
         conditions: by identifier; see `assumed` for fixed answers.
-        environment: of the context, by attribute name; still air and water where it says nothing.
-        areas: of the context as drawn; robots flee to its emergency areas.
-        elements: context elements of plug-ins.
         terms: observers of the run, and what cuts it off.
 
     Raises:
@@ -75,17 +65,8 @@ def simulate(
     """
     if not backend.simulated:
         raise UsageError(f"backend '{backend.name}': runs in real time; use it with 'mmrs run'")
-    given = inputs_of(
-        program,
-        types=types,
-        robot_kinds=robot_kinds,
-        move_kinds=move_kinds,
-        options=options or {},
-        environment=environment or {},
-        areas=areas,
-        elements=elements,
-    )
-    refuse_undecided(program, given, conditions or {})
+    program, inputs = given.program, inputs_of(given, options or {})
+    refuse_undecided(program, inputs, conditions or {})
     made: list[StepRecord] = []
 
     def observe(record: StepRecord) -> None:
@@ -93,7 +74,7 @@ def simulate(
         if terms.observe is not None:
             terms.observe(record)
 
-    connected = {id: backend.connect(each) for id, each in given.items()}
+    connected = {id: backend.connect(each) for id, each in inputs.items()}
     with collector_at_rest():  # what a run makes is kept to its end
         ending = run(
             program.executable,
@@ -101,7 +82,7 @@ def simulate(
             slots=LocalSlots(program.executable),
             clock=SimulatedClock(),
             conditions=conditions or {},
-            policies={id: each.policies for id, each in given.items()},
+            policies={id: each.policies for id, each in inputs.items()},
             terms=replace(terms, observe=observe),
         )
     recorders = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
@@ -128,43 +109,21 @@ class _Tracks(Mapping[str, tuple[Sample, ...]]):
         return len(self._recorders)
 
 
-def inputs_of(
-    program: Program,
-    *,
-    types: Mapping[str, RobotType],
-    robot_kinds: Mapping[Name, RobotKind],
-    move_kinds: Mapping[Name, MoveKind],
-    options: Mapping[str, str],
-    environment: Mapping[str, float],
-    areas: tuple[Area, ...],
-    elements: tuple[Part, ...] = (),
-    extensions: Extensions | None = None,
-) -> dict[str, VehicleInput]:
-    """Return what the backend of each robot may use; see `simulate` for the arguments.
+def inputs_of(given: TargetInput, options: Mapping[str, str]) -> dict[str, VehicleInput]:
+    """Return what the backend of each robot may use.
 
     Raises:
         UnsupportedError: if a robot type is missing.
         UsageError: if an option is for a robot that there is not.
     """
-    refuse_strange(options, [robot.id for robot in program.robots])
+    refuse_strange(options, [robot.id for robot in given.program.robots])
+    common = {each.name: getattr(given, each.name) for each in fields(TargetInput)}
     found: dict[str, VehicleInput] = {}
-    for robot in program.robots:
-        robot_type = _type_of(types, robot.id, robot.type_name)
-        policies = _policies(robot_type, robot_kinds)
-        found[robot.id] = VehicleInput(
-            program,
-            robot,
-            robot_type,
-            robot_kinds,
-            move_kinds,
-            environment,
-            options_for(robot.id, options),
-            policies,
-            areas,
-            extensions=extensions or {},
-            types=types,
-            elements=elements,
-        )
+    for robot in given.program.robots:
+        robot_type = _type_of(given.types, robot.id, robot.type_name)
+        policies = _policies(robot_type, given.robot_kinds)
+        own = options_for(robot.id, options)
+        found[robot.id] = VehicleInput(**common, robot=robot, type=robot_type, options=own, policies=policies)
     return found
 
 

@@ -117,7 +117,9 @@ def words_of(told):
         else:
             lines.append(line)
     entries = (entry for line in lines for entry in entries_of(line, {field.name for field in fields(told)}))
-    return summary.strip(), {name: words for names, words in entries for name in names.split(", ")}
+    inherited = words_of(told.__base__)[1] if is_dataclass(told.__base__) else {}
+    own = {name: words for names, words in entries for name in names.split(", ")}
+    return summary.strip(), inherited | own
 
 
 def entries_of(line, known):
@@ -165,7 +167,6 @@ def section_of_methods(told):
     lines = []
     for each in ordered:
         function = each.fget if isinstance(each, property) else each
-        (str(inspect.signature(function)).replace("'", "").replace("self, ", "").replace("self", ""))
         must = " Required." if getattr(each, "__isabstractmethod__", False) else ""
         summary = inspect.getdoc(each).partition("\n")[0]
         shown = (

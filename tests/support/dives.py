@@ -16,6 +16,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Move, MoveTarget, Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Condition
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
@@ -78,16 +79,10 @@ def rehearse(
         before(robot)
         return robot
 
-    done = simulate(
-        behaviour,
-        backend=replace(CAN_SIM, connect=connect),
-        types={kind.name: kind},
-        robot_kinds={AUV_KIND.metaclass: AUV_KIND},
-        move_kinds={each.metaclass: each for each in MOVE_KINDS},
-        options=options,
-        conditions=conditions,
-        areas=areas,
-    )
+    kinds = {AUV_KIND.metaclass: AUV_KIND}, {each.metaclass: each for each in MOVE_KINDS}
+    given = TargetInput(behaviour, {kind.name: kind}, *kinds, areas=areas)
+    backend = replace(CAN_SIM, connect=connect)
+    done = simulate(given, backend, options=options, conditions=conditions)
     with LogWriter(folder) as writer:
         for record in done.records:
             writer.write(record)

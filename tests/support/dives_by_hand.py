@@ -54,7 +54,8 @@ def given(*moves, live=None, areas=(), policies=(), **options):
     robot = robot_program("naiad", moves or MOVES, home=(0.0, 0.0, 0.0), type_name="Diver")
     kinds = {AUV_MOVEMENT: AUV_KIND}
     behaviour = program(robot, frame=POOL, reserve=0.2)
-    return VehicleInput(behaviour, robot, DIVER, kinds, {}, {}, options, policies, areas, live)
+    own = {"robot": robot, "type": DIVER, "options": options, "policies": policies, "live": live}
+    return VehicleInput(behaviour, {DIVER.name: DIVER}, kinds, {}, areas, **own)
 
 
 def connected(url, clock, say=print, shared=None, **more):

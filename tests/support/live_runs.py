@@ -9,6 +9,7 @@ from math import inf
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import MmrsError
 from mmrs_core.simulation.live import live_run_for, run_live
@@ -157,9 +158,7 @@ class Flight:
     def __init__(self, behaviour, script, kinds, speedup=1.0, here=None, **more):
         self.behaviour, self.script, self.records, self.said = behaviour, script, [], []
         self.orders = Orders()
-        inputs = inputs_of(
-            behaviour, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds
-        )
+        inputs = inputs_of(TargetInput(behaviour, {ROBOT_TYPE: robot_type()}, **kinds), {})
         inputs = {id: given for id, given in inputs.items() if here is None or id in here}
         factory = script.factory if isinstance(script, Script) else script
         given = {"bus": LocalSlots(behaviour.executable), "conditions": {}, **more}

@@ -19,7 +19,7 @@ from mmrs_core.errors import MmrsError
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.tracks import Track, nearest
-from mmrs_core.pipeline import BehaviourContext, conditions_for
+from mmrs_core.pipeline import BehaviourContext, conditions_for, input_of
 from mmrs_core.scene import Name, Position
 from mmrs_core.simulation.run import SimulatedRun, refuse_unasked, simulate
 
@@ -89,15 +89,9 @@ def planned_for(
     notes = tuple(choosing.notes)
     try:
         run = simulate(
-            choosing.program,
-            backend=contributions.vehicles[BACKEND],
-            types=place.types,
-            robot_kinds=contributions.robot_kinds,
-            move_kinds=contributions.move_kinds,
+            input_of(choosing.program, place, contributions),
+            contributions.vehicles[BACKEND],
             conditions=choosing.conditions,
-            environment=place.environment,
-            areas=place.areas or (),
-            elements=place.elements,
         )
     except MmrsError as error:
         return Planned(None, (*notes, f"planned times and energy are unknown: {error}"))

@@ -108,11 +108,11 @@ class VehicleConformance(Conformance):
         known = self.with_core()
         return VehicleInput(
             program=self.behaviour,
-            robot=self.behaviour.robots[0],
-            type=self.type,
+            types={self.type.name: self.type},
             robot_kinds=known.robot_kinds,
             move_kinds=known.move_kinds,
-            environment={},
+            robot=self.behaviour.robots[0],
+            type=self.type,
             options=self.options.get(vehicle.name, {}),
         )
 

@@ -59,14 +59,8 @@ def test_the_leader_goes_closer_only_with_energy_left(program, place, contributi
     from mmrs_core.contributions.execution import Condition
 
     answer = {"energy_above_100_kJ": Condition("energy_above_100_kJ", lambda state: energetic)}
-    run = simulate(
-        program,
-        backend=contributions.vehicles["simulation"],
-        types=place.types,
-        robot_kinds=contributions.robot_kinds,
-        move_kinds=contributions.move_kinds,
-        conditions=answer,
-    )
+    given, backend = pipeline.input_of(program, place, contributions), contributions.vehicles["simulation"]
+    run = simulate(given, backend, conditions=answer)
     assert any(record.move == "closer" for record in run.records) is closer
 
 

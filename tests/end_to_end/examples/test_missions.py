@@ -235,15 +235,9 @@ def test_a_small_battery_makes_a_drone_of_the_mixed_team_recharge(taken):
 @pytest.mark.parametrize(("energetic", "task"), [(True, "landslide scar"), (False, "over the car park")])
 def test_the_choice_of_the_mixed_team_leads_to_the_task_of_its_arm(taken, contributions, energetic, task):
     example = taken("mixed-team")
-    run = simulate(
-        example.program,
-        backend=contributions.vehicles["simulation"],
-        types=example.place.types,
-        robot_kinds=contributions.robot_kinds,
-        move_kinds=contributions.move_kinds,
-        conditions={"energy_above_100_kJ": Condition("energy_above_100_kJ", lambda state: energetic)},
-        environment=example.place.environment,
-    )
+    given = pipeline.input_of(example.program, example.place, contributions)
+    answer = {"energy_above_100_kJ": Condition("energy_above_100_kJ", lambda state: energetic)}
+    run = simulate(given, contributions.vehicles["simulation"], conditions=answer)
     moves = {(robot.id, move.id): move.task for robot in example.program.robots for move in robot.moves}
     done = {moves[record.robot, record.move] for record in run.records}
     assert run.ending.outcome.value == "success"

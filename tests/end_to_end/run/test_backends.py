@@ -68,12 +68,11 @@ def rover(*policies, folder=None, recharge=60.0, **settings):
     clock, links = RealClock(SPEEDUP), {"r": f"udpin:127.0.0.1:{port}"}
     given = VehicleInput(
         replace(program(ROVER), frame=EARTH),
-        replace(ROVER, policies=policies),
-        robot_type(),
+        {robot_type().name: robot_type()},
         {},
         {},
-        {},
-        {},
+        robot=replace(ROVER, policies=policies),
+        type=robot_type(),
         live=Live(clock, lambda: None, lambda line: None, "run-0", folder, links=links),
     )
     with SimulatedVehicle(

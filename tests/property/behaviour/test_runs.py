@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.simulation.run import simulate
 from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
@@ -32,9 +33,9 @@ FULL = settings(max_examples=600, deadline=None, suppress_health_check=[HealthCh
 
 
 def run_of(program, answers=None, **options):
-    given = assumed(answers or dict.fromkeys(CONDITIONS, True))
-    types = {ROBOT_TYPE: TYPE}
-    return simulate(program, backend=SIMULATION, types=types, conditions=given, **KINDS, **options)
+    conditions = assumed(answers or dict.fromkeys(CONDITIONS, True))
+    given = TargetInput(program, {ROBOT_TYPE: TYPE}, **KINDS)
+    return simulate(given, SIMULATION, conditions=conditions, **options)
 
 
 def terminal_states(program):

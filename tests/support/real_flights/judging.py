@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import cos, dist, radians, sin
 from pathlib import Path
@@ -107,20 +107,14 @@ def planned(folder: Path, *, uploaded: bool = False) -> Planned:
         uploaded: whether vehicles fly it as missions of their own, which take longer than steps.
     """
     contributions = installed()
-    kinds = contributions.robot_kinds
     loaded = load_behaviour(Session(Settings()), folder / "behaviour.xmi")
     program, place = loaded.program, loaded.place
-    run = simulate(
-        program,
-        backend=pipeline.backend_for(program, contributions, "simulation", {}),
-        types=place.types,
-        robot_kinds=as_uploaded(kinds) if uploaded else kinds,
-        move_kinds=contributions.move_kinds,
-        conditions=pipeline.conditions_for(program, contributions, {}, asks=False),
-        environment=place.environment,
-        areas=place.areas or (),
-        elements=place.elements,
-    )
+    given = pipeline.input_of(program, place, contributions)
+    if uploaded:
+        given = replace(given, robot_kinds=as_uploaded(contributions.robot_kinds))
+    backend = pipeline.backend_for(program, contributions, "simulation", {})
+    conditions = pipeline.conditions_for(program, contributions, {}, asks=False)
+    run = simulate(given, backend, conditions=conditions)
     lines = {
         robot: [(sample.east, sample.north, sample.up) for sample in track]
         for robot, track in run.tracks.items()

@@ -7,6 +7,7 @@ from live_runs import Flight
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.simulation.run import simulate
 from mmrs_core.simulation.simulation import SIMULATION
@@ -68,8 +69,9 @@ def fly(kinds):
     """Return a function that simulates a behaviour whose log must replay without complaint."""
 
     def run(program, type=None, **options):
-        types = {ROBOT_TYPE: type or robot_type()}
-        found = simulate(program, backend=SIMULATION, types=types, **kinds, **options)
+        parts = {name: options.pop(name) for name in ("areas", "elements", "environment") if name in options}
+        given = TargetInput(program, {ROBOT_TYPE: type or robot_type()}, **kinds, **parts)
+        found = simulate(given, SIMULATION, **options)
         result = replay(program, found.records, partial=True)
         assert result.accepted, result.complaints
         if found.ending.outcome.value != "incomplete":

@@ -33,7 +33,7 @@ def escapes_among(*areas, floor=-inf, turning_radius=0.0):
         launches=True,
         turning_radius=turning_radius,
     )
-    return Escapes(VehicleInput(program, robot, kind, {}, {}, {}, {}, (), areas), kinematics, HOME)
+    return Escapes(VehicleInput(program, {}, {}, {}, areas, robot=robot, type=kind), kinematics, HOME)
 
 
 def test_the_way_home_leads_around_a_forbidden_area_and_down():

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleFactory, VehicleInput
 from mmrs_core.errors import UnreadableError, UsageError
 from mmrs_core.simulation.run import mixed, options_for, simulate
@@ -130,12 +131,10 @@ def chosen(kinds, surroundings):
     def run(behaviour, **options):
         type = robot_type(metaclass=FLYER, devices={"camera": {"TakePicture": 1.0}})
         found = simulate(
-            behaviour,
-            backend=SIMULATION,
-            types={ROBOT_TYPE: type},
+            TargetInput(behaviour, {ROBOT_TYPE: type}, **kinds),
+            SIMULATION,
             conditions=standard_conditions(["found:float", "detected:float"]),
             options=options or {"a:surroundings": str(surroundings)},
-            **kinds,
         )
         return [each.detail for each in found.records if each.label == "choose"]
 
@@ -193,7 +192,7 @@ def test_a_backend_hears_only_of_the_links_of_its_own_robots():
     behaviour = program(*(robot(name, []) for name in "abc"))
     both = mixed(radio, {"c": wire}, "abc")
     for each in behaviour.robots:
-        both.connect(VehicleInput(behaviour, each, robot_type(), {}, {}, {}, {}, live=live))
+        both.connect(VehicleInput(behaviour, {}, {}, {}, robot=each, type=robot_type(), live=live))
     assert {name: sorted(known) for name, known in heard.items()} == {
         "a": ["a", "b"],
         "b": ["a", "b"],

@@ -11,6 +11,7 @@ from live_runs import TWO, WALK, Script, do
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import Policy
 from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
@@ -315,7 +316,7 @@ def test_a_log_of_another_behaviour_is_refused(live, kinds):
     run = live(WALK, Script())
     run.end()
     other = program(robot("r", [do("swim")]))
-    given = inputs_of(other, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds)
+    given = inputs_of(TargetInput(other, {ROBOT_TYPE: robot_type()}, **kinds), {})
     live_run = live_run_for(other, given, Script().factory, LocalSlots(other.executable), {})
     with pytest.raises(ValueError, match="not one of its program's"):
         run_live(replace(live_run, resumed=tuple(run.records)))

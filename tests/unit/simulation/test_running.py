@@ -368,7 +368,7 @@ def test_a_run_can_follow_the_worlds_time(kinds):
     )
     backends = {}
     for each in behaviour.robots:
-        given = VehicleInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
+        given = VehicleInput(behaviour, {}, **kinds, robot=each, type=robot_type())
         backends[each.id] = SimulatedRobot(given)
     clock = RealClock(100.0)
     records, _ = carried_out(behaviour, backends, clock=clock)

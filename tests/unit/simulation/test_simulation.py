@@ -307,15 +307,8 @@ def test_an_object_whose_place_nobody_knows_is_found_where_the_robot_is_and_a_no
 
 
 def given(behaviour, kinds, type=None, **more):
-    return VehicleInput(
-        behaviour,
-        behaviour.robots[0],
-        type or robot_type(),
-        kinds["robot_kinds"],
-        kinds["move_kinds"],
-        {},
-        **{"options": {}, **more},
-    )
+    robot, kind = behaviour.robots[0], type or robot_type()
+    return VehicleInput(behaviour, {kind.name: kind}, **kinds, robot=robot, type=kind, **more)
 
 
 def test_unknown_moves_and_actions_are_refused_and_listed_never_skipped(kinds):
@@ -344,10 +337,11 @@ def test_an_option_that_the_simulation_does_not_have_is_refused(kinds):
 
 
 def test_a_robot_type_that_is_missing_is_named(kinds):
+    from mmrs_core.contributions.targets import TargetInput
     from mmrs_core.simulation.run import simulate
 
     with pytest.raises(UnsupportedError) as caught:
-        simulate(program(robot("r", [])), backend=SIMULATION, types={}, **kinds)
+        simulate(TargetInput(program(robot("r", [])), {}, **kinds), SIMULATION)
     assert caught.value.elements == ("robot 'r': type 'plain'",)
 
 

@@ -33,7 +33,7 @@ def live() -> Live:
 
 def asked() -> VehicleInput:
     behaviour = dive()
-    return VehicleInput(behaviour, behaviour.robots[0], diver(), {}, {}, {}, {})
+    return VehicleInput(behaviour, {}, {}, {}, robot=behaviour.robots[0], type=diver())
 
 
 def faults(text: str) -> Rehearsal:

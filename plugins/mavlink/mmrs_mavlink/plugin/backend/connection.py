@@ -11,7 +11,6 @@ from typing import cast
 from mmrs_core.behaviour.earth import from_wgs84
 from mmrs_core.behaviour.program import Action as Doing
 from mmrs_core.behaviour.program import Move, Program
-from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_core.generation.python.moves import action_of
@@ -61,25 +60,15 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
         LinkLostError: the port cannot be opened.
     """
     options = link_options(given.options)
-    types = {**given.types, given.type.name: given.type}
-    input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
-    input = replace(
-        input,
-        areas=given.areas,
-        extensions=given.extensions,
-        environment=given.environment,
-        elements=given.elements,
-        shared=_shared(live),
-    )
-    _refuse(given, input, options)
-    program = robot_of(given.robot, input)
+    _refuse(given, options)
+    program = robot_of(given.robot, given)
     fleet = _fleet(live, options, given.program)
     url, system = _url(given, live)
     try:
         link = fleet.radios.open(url, system)
     except FaultError as fault:
         raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
-    context = context_of(given.robot, input)
+    context = context_of(given.robot, given)
     equipment = _equipment(given, live, context, program, fleet, link)
     return BehaviourVehicle(program, equipment, lambda each: built(action_of(each, context, DRIVER), words))
 
@@ -126,8 +115,8 @@ class BehaviourVehicle(ThreadedVehicle):
         super().do(known, now, through=through)
 
 
-def _refuse(given: VehicleInput, input: TargetInput, options: LinkOptions) -> None:
-    alone = replace(input, program=replace(given.program, robots=(given.robot,)))
+def _refuse(given: VehicleInput, options: LinkOptions) -> None:
+    alone = replace(given, program=replace(given.program, robots=(given.robot,)))
     found = list(MAVLINK_PYTHON.refusals(alone))
     if not options.objects:
         found += [
@@ -161,13 +150,6 @@ def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
     fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal)
     live.shared[SHARED] = fleet
     return fleet
-
-
-def _shared(live: Live) -> dict[Callable[..., object], object]:
-    """Return what the robots of a run keep for each other about their program."""
-    found = live.shared.setdefault(f"{SHARED} program", {})
-    assert isinstance(found, dict)
-    return found
 
 
 def _signer(path: Path | None) -> Signer | None:

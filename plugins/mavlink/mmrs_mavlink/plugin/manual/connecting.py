@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_mavlink.links.link import Link
@@ -32,11 +31,7 @@ def connect(given: VehicleInput) -> ManualRobot:
     speed = _full_speed(given)
     if given.live is None:
         raise UnsupportedError("backend 'ardusub-manual': drives robots in real time; 'mmrs run' does that")
-    types = {**given.types, given.type.name: given.type}
-    input = TargetInput(
-        given.program, types, given.robot_kinds, given.move_kinds, extensions=given.extensions
-    )
-    context = context_of(given.robot, input)
+    context = context_of(given.robot, given)
     found = list(refusals(context))
     if found:
         raise UnsupportedError(f"robot '{given.robot.id}': cannot be driven to do all of it by hand", found)
