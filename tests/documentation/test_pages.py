@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from code_blocks import Block, Reader, alike, blocks_of, commands_of
+from code_blocks import Block, Reader, alike, blocks_of, commands_of, environment
 from hypothesis import HealthCheck, settings
 from warm_python import programs
 
@@ -36,7 +36,7 @@ def unhurried():
 @pytest.mark.parametrize("page", [page for page in PAGES if BLOCKS[page]])
 def test_what_a_page_says_to_type_does_what_it_says(page, tmp_path):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    reader = Reader(tmp_path, programs())
+    reader = Reader(tmp_path, environment(programs()))
     for block in BLOCKS[page]:
         reader.follow(block)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -14,14 +13,12 @@ from pathlib import Path
 import pytest
 import same_examples
 import warm_python
+from code_blocks import Reader, blocks_of, environment
 from type_checks import mypy
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(600)]
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial"
 PAGES = sorted(TUTORIAL.glob("[0-9]-*.md"))
-BLOCK = re.compile(
-    r'^```(?P<sort>\w+)(?: title="(?P<file>[^"]+)")?\n(?P<text>.*?)^```$', re.DOTALL | re.MULTILINE
-)
 PICTURE = re.compile(r"<!-- picture: (?P<made>\S+) is (?P<shown>\S+) -->")
 PROGRAMS = {
     "pip": "from pip._internal.cli.main import main",
@@ -41,59 +38,8 @@ OFFLINE = {
 }
 
 
-class Reader:
-    """Somebody who does what the pages say, in an environment that has what this one has.
-
-    Attributes:
-        folder: where the reader is now.
-    """
-
-    def __init__(self, folder, environment):
-        self.folder, self._environment = folder, environment
-
-    def follow(self, page):
-        """Write the files of a page, and run its commands."""
-        for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
-            if block["file"]:
-                file = self.folder / block["file"]
-                file.write_text(block["text"], encoding="utf-8")
-            elif block["sort"] == "console":
-                for command, expected in commands_in(block["text"]):
-                    self._run(command, expected, page)
-
-    def _run(self, command, expected, page):
-        if command.startswith("cd "):
-            self.folder = self.folder / command[3:]
-            return
-        done = subprocess.run(
-            ["bash", "-c", command],
-            cwd=self.folder,
-            env=self._environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            timeout=240,
-        )
-        said = "".join(f"{line}\n" for line in done.stdout.rstrip().splitlines())
-        assert done.returncode == 0 or command.startswith("mmrs validate"), f"{page.name}: {command}\n{said}"
-        assert re.fullmatch(pattern_of(expected), said), f"{page.name}: {command}\n{said}"
-
-
-def commands_in(text):
-    """Yield each command of a console block with the output that the page shows."""
-    for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
-        command, _, output = part.partition("\n")
-        yield command, output.rstrip()
-
-
-def pattern_of(expected):
-    """Return what output must match; an ellipsis stands for any words, on a line of its own for any lines."""
-    lines = (re.escape(line).replace("…", "[^\n]*") + "\n" for line in expected.splitlines())
-    return "".join("(?:[^\n]*\n)*?" if line == "[^\n]*\n" else line for line in lines)
-
-
 @pytest.fixture(scope="module")
-def environment(tmp_path_factory):
+def terminal(tmp_path_factory):
     """The variables of a virtual environment in which everything is installed that is here."""
     home = tmp_path_factory.mktemp("environment")
     venv.create(home, with_pip=False)
@@ -108,16 +54,16 @@ def environment(tmp_path_factory):
     script = home / "bin" / "mmrs"
     script.write_text(f'#!/bin/sh\nexec {warm_python.python()} {home}/mmrs.py "$@"\n', encoding="utf-8")
     script.chmod(0o755)
-    path = f"{home / 'bin'}{os.pathsep}{os.environ['PATH']}"
-    return {**os.environ, **OFFLINE, "PATH": path, "NO_COLOR": "1", "COLUMNS": "120"}
+    return environment(home / "bin") | OFFLINE
 
 
 @pytest.fixture(scope="module")
-def followed(tmp_path_factory, environment):
+def followed(tmp_path_factory, terminal):
     """The folder in which a reader is who has done what all pages say, and seen what they show."""
-    reader = Reader(tmp_path_factory.mktemp("tutorial"), environment)
+    reader = Reader(tmp_path_factory.mktemp("tutorial"), terminal)
     for page in PAGES:
-        reader.follow(page)
+        for block in blocks_of(page.read_text(encoding="utf-8"), page.name):
+            reader.follow(block)
     return reader.folder
 
 
@@ -137,9 +83,9 @@ def test_readers_see_the_pictures_of_the_pages(followed, update_golden):
         ("ruff", "format", "--no-cache", "--check", "mmrs_panels", "tests"),
     ],
 )
-def test_what_readers_have_written_is_as_clean_as_the_core(followed, environment, tool):
+def test_what_readers_have_written_is_as_clean_as_the_core(followed, terminal, tool):
     command = [sys.executable, "-m", *tool]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=followed, env=environment, timeout=240)
+    done = subprocess.run(command, capture_output=True, text=True, cwd=followed, env=terminal, timeout=240)
     assert done.returncode == 0, f"{done.stdout}{done.stderr}"
 
 

@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,11 +63,15 @@ def blocks_of(text: str, page: str) -> list[Block]:
 
 
 class Reader:
-    """Somebody who does in an empty folder what a page says, in the order in which it says it."""
+    """Somebody who does what a page says, in the order in which it says it.
 
-    def __init__(self, folder: Path, programs: Path | None = None) -> None:
-        """Read in a folder; `programs`: a folder whose programs go before those that are installed."""
-        self._folder, self._environment = folder, environment(programs)
+    Attributes:
+        folder: where the reader is now: an empty one at first.
+    """
+
+    def __init__(self, folder: Path, variables: Mapping[str, str] | None = None) -> None:
+        """Read in a folder; `variables`: of the reader's terminal; None: those of `environment`."""
+        self.folder, self._variables = folder, environment() if variables is None else variables
         self._names: dict[str, object] = {"__name__": "page"}
 
     def follow(self, block: Block) -> None:
@@ -82,7 +87,7 @@ class Reader:
         elif block.language in PARSERS:
             PARSERS[block.language](block.text)
         if block.title and block.language != "console":
-            path = self._folder / block.title
+            path = self.folder / block.title
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(block.text, encoding="utf-8")
 
@@ -91,10 +96,13 @@ class Reader:
         code = int(expected[1]) if expected else 0
         commands = commands_of(block)
         for number, (command, told) in enumerate(commands):
+            if command.startswith("cd "):
+                self.folder /= command.removeprefix("cd ")
+                continue
             done = subprocess.run(
                 ["bash", "-c", command],
-                cwd=self._folder,
-                env=self._environment,
+                cwd=self.folder,
+                env=self._variables,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
@@ -108,7 +116,7 @@ class Reader:
                 )
 
     def _evaluate(self, block: Block) -> None:
-        with contextlib.chdir(self._folder):
+        with contextlib.chdir(self.folder):
             if ">>>" not in block.text:
                 exec(compile(block.text, block.where, "exec"), self._names)  # noqa: S102  the page's code
                 return
