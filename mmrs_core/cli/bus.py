@@ -19,7 +19,7 @@ from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.buses import refuse_endpoints
 from mmrs_core.cli.completion import robot_names
-from mmrs_core.cli.output import counted, say, say_json, tell
+from mmrs_core.cli.output import answer, counted, say, say_json, tell, written
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -109,11 +109,7 @@ def keys(
     reached = [_host(text) for text in hosts or ("localhost", "127.0.0.1")]
     with _readable():
         made = make_keys(folder, holders, reached, datetime.now(UTC), days)
-    if json:
-        say_json({"folders": [str(each) for each in made]})
-    else:
-        for each in made:
-            say(f"written: {each}")
+    answer({"folders": list(map(str, made))}, written(made), as_json=json)
     return 0
 
 
@@ -135,12 +131,8 @@ def revoke(
     with _needing("cryptography"):
         from mmrs_core.cli import bus_certificates
     with _readable():
-        written = bus_certificates.revoke(folder, name, datetime.now(UTC))
-    if json:
-        say_json({"revoked": name, "lists": [str(each) for each in written]})
-    else:
-        for each in written:
-            say(f"written: {each}")
+        lists = bus_certificates.revoke(folder, name, datetime.now(UTC))
+    answer({"revoked": name, "lists": list(map(str, lists))}, written(lists), as_json=json)
     return 0
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.cli.behaviours import load_behaviour, tasks_beside
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import say, say_json, say_lines
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.sarif import (
     STANDARD_OUTPUT,
@@ -63,8 +63,7 @@ def check(
     if json:
         say_json({"safe": not against, "verdicts": verdicts, "against": against})
     elif sarif != STANDARD_OUTPUT:
-        for line in verdict_table(verdicts):
-            say(line)
+        say_lines(verdict_table(verdicts))
         say(f"{file}: {_in_all(verdicts, against)}")
         hinted: set[str] = set()
         for verdict in against:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from mmrs_core.cli.completion import one_of, running_robots
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import say, say_json, say_lines
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError
 from mmrs_runtime.orders.channels import Unreachable
@@ -82,8 +82,7 @@ def control(
     if json:
         say_json({"order": order, "robots": replies})
     elif order == STATUS:
-        for line in lines_of(replies):
-            say(line)
+        say_lines(lines_of(replies))
     return 0 if all(reply.get("confirmed", True) for reply in replies) else 1
 
 

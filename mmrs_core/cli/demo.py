@@ -9,7 +9,7 @@ import typer
 
 from mmrs_core.cli.completion import example_names
 from mmrs_core.cli.examples import also_called, demo_settings_of, example_folder, examples
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import answer
 from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.cli.settings import Json, settings_of
 
@@ -45,20 +45,13 @@ def demo(
 
     stages = CommandStages(Session(settings_of(call)), folder)
     made = demonstrate(stages, folder, out, demo_settings_of(folder), examples().values())
-    if json:
-        say_json(made.summary())
-    else:
-        for line in made.lines():
-            say(line)
+    answer(made.summary(), made.lines(), as_json=json)
     return 0 if made.succeeded else 1
 
 
 def _list_examples(json: bool) -> int:
     found = examples()
-    if json:
-        say_json({"examples": found})
-    else:
-        for name, folder in found.items():
-            also = also_called(folder)
-            say(f"{name}{f' or {also}' if also else ''}  ({folder})")
+    called = {name: " or ".join(filter(None, (name, also_called(each)))) for name, each in found.items()}
+    lines = (f"{called[name]}  ({folder})" for name, folder in found.items())
+    answer({"examples": found}, lines, as_json=json)
     return 0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.completion import generated_robots, generated_tasks
-from mmrs_core.cli.output import say, say_json, table, tell
+from mmrs_core.cli.output import say_json, say_lines, table, tell
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import MmrsError
 from mmrs_core.generation.explaining import Explanation, Found, places_of
@@ -74,8 +74,7 @@ def _line(file: Path, line: int, json: bool) -> int:
         return 0
     if found.changed:
         tell(f"mmrs: {file}: {'is yours since it was generated' if found.recorded.once else CHANGED}")
-    for words in _words_of(found):
-        say(words)
+    say_lines(_words_of(found))
     return 0
 
 
@@ -127,8 +126,7 @@ def _places(folder: Path, robot: str, move: str, task: str, json: bool) -> int:
     rows = [
         (_where(each), each.entry.step.robot, each.entry.step.move, each.entry.step.task) for each in found
     ]
-    for line in table(("lines", "robot", "move", "task"), rows):
-        say(line)
+    say_lines(table(("lines", "robot", "move", "task"), rows))
     return 0
 
 

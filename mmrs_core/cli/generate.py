@@ -12,7 +12,7 @@ import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.completion import target_names
-from mmrs_core.cli.output import counted, say, say_json, table
+from mmrs_core.cli.output import answer, counted, say, say_json, table
 from mmrs_core.cli.parameters import Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.session import Session, require_safe, verdicts_of
@@ -187,11 +187,9 @@ def _generate(session: Session, file: Path, order: _Order) -> _Made:
 
 def _list_targets(session: Session, json: bool) -> int:
     targets = sorted(session.contributions.targets.values(), key=lambda target: target.name)
-    if json:
-        say_json({"targets": [{"name": each.name, "description": each.description} for each in targets]})
-    else:
-        for line in table(("target", "description"), [(each.name, each.description) for each in targets]):
-            say(line)
+    names = [(each.name, each.description) for each in targets]
+    found = {"targets": [{"name": name, "description": description} for name, description in names]}
+    answer(found, table(("target", "description"), names), as_json=json)
     return 0
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.output import counted, report, say, say_json, table, tell
+from mmrs_core.cli.output import counted, report, say, say_json, say_lines, table, tell
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -217,8 +217,7 @@ def _tell_all(result: ImportResult) -> None:
         for row in (map(_row, group) if len(group) < _MANY else [_row_of_all(group)])
     ]
     if rows:
-        for line in table(("became", "place", "name", "why"), rows):
-            say(line)
+        say_lines(table(("became", "place", "name", "why"), rows))
     for note in result.notes:
         say(f"note: {note}")
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mmrs_core.cli.output import counted, say, say_json, table
+from mmrs_core.cli.output import answer, counted, say, say_json, table
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.stubs.write import write_stubs
@@ -44,12 +44,9 @@ def list_metamodels(call: typer.Context, json: Json = False) -> int:
         (package.ns_uri, package.name, package.provider, str(len(package.metaclasses)))
         for package in registry.packages
     ]
-    if json:
-        names = ("ns_uri", "name", "provider", "classes")
-        say_json({"metamodels": [dict(zip(names, row, strict=True)) for row in rows]})
-    else:
-        for line in table(("language", "name", "provided by", "classes"), rows):
-            say(line)
+    names = ("ns_uri", "name", "provider", "classes")
+    found = {"metamodels": [dict(zip(names, row, strict=True)) for row in rows]}
+    answer(found, table(("language", "name", "provided by", "classes"), rows), as_json=json)
     return 0
 
 
@@ -146,12 +143,8 @@ def stubs(
 
 
 def _written(paths: tuple[Path, ...] | list[Path], json: bool) -> int:
-    if json:
-        say_json({"files": list(paths)})
-    else:
-        say(f"{counted(len(paths), 'file')} written")
-        for path in paths:
-            say(f"  {path}")
+    lines = (f"{counted(len(paths), 'file')} written", *(f"  {path}" for path in paths))
+    answer({"files": list(paths)}, lines, as_json=json)
     return 0
 
 

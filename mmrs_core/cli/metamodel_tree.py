@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import answer
 from mmrs_core.cli.settings import settings_of
 from mmrs_core.cli.tree_words import value_words
 from mmrs_core.languages.evolution.versions import version_of
@@ -23,12 +23,10 @@ _Branch = tuple[str, list["_Branch"]]
 def show_metamodel(call: typer.Context, file: Path, depth: int, json: bool) -> int:
     """Print the packages of an .ecore file; errors as in `version_of`."""
     version = version_of(str(file), settings_of(call).plugins().contributions.languages)
-    if json:
-        say_json({"file": file, "packages": [_as_json(package) for package in version.packages]})
-        return 0
-    for package in version.packages:
-        for line in _lines(_package(package), depth):
-            say(line)
+    lines = (line for package in version.packages for line in _lines(_package(package), depth))
+    answer(
+        {"file": file, "packages": [_as_json(package) for package in version.packages]}, lines, as_json=json
+    )
     return 0
 
 
@@ -36,10 +34,8 @@ def validate_metamodel(call: typer.Context, file: Path, json: bool) -> int:
     """Print that models can be read by an .ecore file; errors as in `version_of` if they cannot."""
     version = version_of(str(file), settings_of(call).plugins().contributions.languages)
     count = sum(len(package.metaclasses) for package in version.packages)
-    if json:
-        say_json({"valid": True, "diagnostics": []})
-    else:
-        say(f"{file}: a sound metamodel ({_classes(count)})")
+    line = f"{file}: a sound metamodel ({_classes(count)})"
+    answer({"valid": True, "diagnostics": []}, [line], as_json=json)
     return 0
 
 

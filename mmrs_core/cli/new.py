@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.asking import ask, is_terminal
-from mmrs_core.cli.output import counted, progress, report, say, say_json, table, tell
+from mmrs_core.cli.output import counted, progress, report, say, say_json, say_lines, table, tell
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -304,14 +304,10 @@ def _list(contributions: Contributions, json: bool) -> int:
     if json:
         say_json({"robots": {name: each.description for name, each in types.items()}, "tasks": tasks})
         return 0
-    for line in table(("robot type", "machine"), [(name, each.description) for name, each in types.items()]):
-        say(line)
+    say_lines(table(("robot type", "machine"), [(name, each.description) for name, each in types.items()]))
     say()
-    for line in table(
-        ("task type", "what", "by"),
-        [(name, beginning.label_of(name), ", ".join(able) or "none") for name, able in tasks.items()],
-    ):
-        say(line)
+    doers = [(name, beginning.label_of(name), ", ".join(able) or "none") for name, able in tasks.items()]
+    say_lines(table(("task type", "what", "by"), doers))
     return 0
 
 

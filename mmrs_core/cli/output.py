@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 from unicodedata import category
 
@@ -82,6 +83,25 @@ def say_json(value: object) -> None:
     from mmrs_core.cli.encoding import plain
 
     _write(sys.stdout, json.dumps(plain(value), ensure_ascii=False, indent=2, allow_nan=False) + "\n")
+
+
+def answer(value: object, lines: Iterable[str], *, as_json: bool) -> None:
+    """Print a result: as one JSON object, or line by line."""
+    if as_json:
+        say_json(value)
+    else:
+        say_lines(lines)
+
+
+def say_lines(lines: Iterable[str]) -> None:
+    """Print lines of the result."""
+    for line in lines:
+        say(line)
+
+
+def written(paths: Iterable[Path]) -> Iterator[str]:
+    """Yield the lines about files that were written."""
+    return (f"written: {path}" for path in paths)
 
 
 def say_file(text: bytes) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.conversion import SchemaLocation, places_in
-from mmrs_core.cli.output import progress, say, say_json, tell
+from mmrs_core.cli.output import progress, say_json, say_lines, tell, written
 from mmrs_core.cli.parameters import (
     Context,
     Explain,
@@ -110,11 +110,9 @@ def plan(
             summary = {**summary, "explanation": explanation_summary(stages.explanation)}
         say_json({"behaviour": file, **summary, "verdicts": stages.verdicts})
     else:
-        for line in plan_lines(stages.scene, timed):
-            say(line)
-        for line in explanation_lines(stages.explanation) if explain else ():
-            say(line)
-        say(f"written: {file}")
+        say_lines(plan_lines(stages.scene, timed))
+        say_lines(explanation_lines(stages.explanation) if explain else ())
+        say_lines(written([file]))
     return 0
 
 

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.completion import plugin_parts
-from mmrs_core.cli.output import counted, say, say_json, tell
+from mmrs_core.cli.output import answer, counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
 from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.generation.scaffolding.files import PARTS, write_plugin
@@ -46,14 +46,14 @@ def list_plugins(call: typer.Context, json: Json = False) -> int:
         return _list_broken(str(error), json)
     if conflict:
         tell(f"mmrs: {conflict}")
-    if json:
-        say_json({"plugins": found} | ({"error": conflict} if conflict else {}))
-        return 1 if conflict else 0
-    for name, (distribution, release, sorts) in found.items():
-        say(f"{name} ({' '.join(filter(None, (distribution, release)))})")
-        for sort, names in sorts.items():
-            say(f"  {sort.replace('_', ' ')}: {_listed(names)}")
+    answer({"plugins": found} | ({"error": conflict} if conflict else {}), _lines(found), as_json=json)
     return 1 if conflict else 0
+
+
+def _lines(found: _Found) -> Iterator[str]:
+    for name, (distribution, release, sorts) in found.items():
+        yield f"{name} ({' '.join(filter(None, (distribution, release)))})"
+        yield from (f"  {sort.replace('_', ' ')}: {_listed(names)}" for sort, names in sorts.items())
 
 
 class TaskGeometry(StrEnum):
@@ -202,12 +202,9 @@ def _list_broken(reason: str, json: bool) -> int:
     """List the installed plug-ins by their entry points, each with whether it loads alone."""
     entries = sorted(entry_points(group=GROUP), key=lambda entry: entry.name)
     states = [(entry.name, entry.dist.name if entry.dist else "", _state(entry)) for entry in entries]
-    if json:
-        broken = [{"plugin": name, "distribution": dist, "state": state} for name, dist, state in states]
-        say_json({"error": reason, "plugins": broken})
-    else:
-        for name, distribution, state in states:
-            say(f"{name} ({distribution}): {state}")
+    broken = [{"plugin": name, "distribution": dist, "state": state} for name, dist, state in states]
+    lines = (f"{name} ({distribution}): {state}" for name, distribution, state in states)
+    answer({"error": reason, "plugins": broken}, lines, as_json=json)
     return 1
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
-from mmrs_core.cli.output import say, say_json, tell
+from mmrs_core.cli.output import answer, tell, written
 from mmrs_core.cli.parameters import (
     Assume,
     Context,
@@ -98,12 +98,8 @@ def preview(
             if explain:
                 picture = replace(picture, explanation=sections_of(stages.explanation))
     refuse_inputs((folder / PAGE, folder / MAP), session.inputs)
-    written = write_pictures(picture, folder)
-    if json:
-        say_json({"files": written})
-    else:
-        for path in written:
-            say(f"written: {path}")
+    files = write_pictures(picture, folder)
+    answer({"files": files}, written(files), as_json=json)
     return 0
 
 

@@ -14,7 +14,7 @@ from mmrs_core.behaviour.replay import ReplayResult
 from mmrs_core.behaviour.replay import replay as replayed
 from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.encoding import plain
-from mmrs_core.cli.output import counted, say, say_json, table, tell
+from mmrs_core.cli.output import counted, say, say_json, say_lines, table, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -85,8 +85,7 @@ def _say_steps(steps: Sequence[PlacedStep]) -> None:
     from mmrs_core.pictures.report.wording import place
 
     rows = [(clock(step.time), step.robot, place(step.where), step.words) for step in steps]
-    for line in table(("time", "robot", "where", "step"), rows):
-        say(line)
+    say_lines(table(("time", "robot", "where", "step"), rows))
 
 
 def _say_json(result: ReplayResult, flight: Flight | None, steps: Sequence[PlacedStep] | None) -> None:

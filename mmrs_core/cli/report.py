@@ -11,7 +11,7 @@ import typer
 from mmrs_core.behaviour.box_files import black_boxes
 from mmrs_core.behaviour.log import logs_in
 from mmrs_core.cli.behaviours import Loaded, load_behaviour
-from mmrs_core.cli.output import progress, say, say_json, tell
+from mmrs_core.cli.output import answer, progress, tell, written
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.session import Session
@@ -63,10 +63,7 @@ def report(
     refuse_inputs((path,), (*session.inputs, *read_files(logs)))
     picture = flight_picture(given, made, session.contributions, file.parent)
     replace_files({path: page(made, given, picture).encode()})
-    if json:
-        say_json({"files": [path], "report": made})
-    else:
-        say(f"written: {path}")
+    answer({"files": [path], "report": made}, written([path]), as_json=json)
     return 0
 
 

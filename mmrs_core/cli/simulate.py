@@ -9,7 +9,7 @@ import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.completion import backend_names
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import answer, written
 from mmrs_core.cli.parameters import (
     Assume,
     BackendOptions,
@@ -75,11 +75,6 @@ def simulate(
     run = fly(session, loaded.program, loaded.place, conditions, chosen)
     types, kinds = loaded.place.types, session.contributions.robot_kinds
     logs = write_logs(run, loaded.program, output, types, kinds) if output is not None else ()
-    if json:
-        say_json({"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs})
-    else:
-        for line in run_lines(run):
-            say(line)
-        for log in logs:
-            say(f"written: {log}")
+    found = {"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs}
+    answer(found, (*run_lines(run), *written(logs)), as_json=json)
     return 0 if succeeded(run) else 1
