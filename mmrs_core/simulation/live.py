@@ -33,10 +33,10 @@ def live_run_for(
         return backend.connect(replace(inputs[id], live=live))
 
     return LiveRun(
-        program.executable,
-        {id: partial(connect, id) for id in inputs},
-        bus,
-        conditions,
+        program=program.executable,
+        connect={id: partial(connect, id) for id in inputs},
+        bus=bus,
+        conditions=conditions,
         policies={id: given.policies for id, given in inputs.items()},
         ready=lambda vehicles: refuse_undecided(program, vehicles, conditions),
     )

@@ -70,10 +70,10 @@ def run_controllers(
         ids = tuple(robot.id for robot in robots)
         assert isinstance(options.clock.followed, RealClock)
         live_run = LiveRun(
-            program,
-            {robot.id: partial(_connect, driver, options, rehearsal, robot) for robot in robots},
-            bus,
-            functions.decides(robots),
+            program=program,
+            connect={robot.id: partial(_connect, driver, options, rehearsal, robot) for robot in robots},
+            bus=bus,
+            conditions=functions.decides(robots),
             clock=options.clock.followed,
             orders=orders,
             run=options.run,

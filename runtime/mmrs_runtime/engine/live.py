@@ -11,7 +11,6 @@ from pathlib import Path
 
 from ..bus import Incomplete
 from ..faults import LINK_LOST, ORDERED, STOPPED, reason_of
-from ..orders.orders import Orders
 from ..policies import Policy
 from ..program import Program
 from ..records.steps import StepRecord
@@ -24,8 +23,7 @@ from .life import PACE
 from .preflight import EarlyOrders, NotReadyError, note_alone, record
 from .resuming import over_by
 from .run import run
-from .status import StatusBoard
-from .terms import Attention, Ending, Observer, Syncer, Terms
+from .terms import Attention, Ending, Terms
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 """Exit codes: all robots are at their ends, or some are not, or a link was lost, or people stopped them."""
@@ -34,8 +32,8 @@ GATHERING_SECONDS = 0.5
 """Real seconds for which more is waited for, once something keeps a robot from getting ready."""
 
 
-@dataclass(frozen=True, slots=True)
-class LiveRun:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LiveRun(Terms):
     """A run in real time, before it begins.
 
     Attributes:
@@ -45,21 +43,12 @@ class LiveRun:
         conditions: by identifier; all that choices of these robots ask for.
         policies: by robot: those of its type and kind, which come after the program's own.
         clock: of the run.
-        orders: from operators, who may give them as soon as this exists.
-        run: identifier of the run.
         folder: of the logs; None where none are kept.
         links: how robots are reached, by robot; backends know their defaults.
-        resumed: the steps made before the run was broken off.
-        suspends: whether a low battery only breaks a program off.
-        patience: seconds to wait for the order to resume once no other robot works.
         meet: waits for robots of other processes once those of this one are ready, calling
             its argument repeatedly; returns, by robot, how accurately they begin together. It raises
             `Incomplete` where they have not come.
         ready: called with the vehicles before anything moves; raises what must keep them from it.
-        observe: called with each step before it has an effect.
-        sync: as of `Terms`.
-        say: reports events to the operator.
-        status_board: status of the robots, for queries.
     """
 
     program: Program
@@ -68,19 +57,12 @@ class LiveRun:
     conditions: Mapping[str, Condition]
     policies: Mapping[str, tuple[Policy, ...]] = field(default_factory=dict)
     clock: RealClock = field(default_factory=RealClock)
-    orders: Orders = field(default_factory=Orders)
-    run: str = "run-0"
     folder: Path | None = None
     links: Mapping[str, str] = field(default_factory=dict)
-    resumed: tuple[StepRecord, ...] = ()
-    suspends: bool = True
-    patience: float = 0.0
     meet: Callable[[Callable[[], None]], Mapping[str, str]] = lambda look: {}
     ready: Callable[[Mapping[str, Vehicle]], None] = lambda vehicles: None
-    observe: Observer | None = None
-    sync: Syncer | None = None
+    suspends: bool = True
     say: Callable[[str], None] = print
-    status_board: StatusBoard = field(default_factory=StatusBoard)
 
     def fail(self, robot: str, which: str) -> None:
         """Log that a robot's program has ended before its first step; report it if that fails."""
@@ -146,20 +128,7 @@ def run_live(live_run: LiveRun) -> Ending:
             clock=live_run.clock,
             conditions=live_run.conditions,
             policies=live_run.policies,
-            terms=Terms(
-                run=live_run.run,
-                incarnation=uuid.uuid4().hex,
-                observe=live_run.observe,
-                sync=live_run.sync,
-                resumed=live_run.resumed,
-                unready=under_way,
-                suspends=live_run.suspends,
-                patience=live_run.patience,
-                attention=attention,
-                orders=live_run.orders,
-                say=live_run.say,
-                status_board=live_run.status_board,
-            ),
+            terms=replace(live_run, incarnation=uuid.uuid4().hex, unready=under_way, attention=attention),
         )
         if robots and set(ending.absent) == set(robots):
             raise NotReadyError({id: ending.faults[id] for id in ending.absent})
