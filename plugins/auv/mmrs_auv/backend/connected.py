@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from auv_vessel.eyes import Detections
-from auv_vessel.wire.ports import CHANNEL
 from mmrs_auv.backend.options import Connecting, connecting
 from mmrs_auv.backend.orders import BehaviourOrders
-from mmrs_auv.controllers.connected import ConnectedVehicle, Reach
-from mmrs_auv.controllers.connected import connected as on_its_bus
+from mmrs_auv.controllers.connected import ConnectedVehicle
 from mmrs_auv.controllers.orders import Waters
 from mmrs_auv.sheets import sheet_of_robot
 from mmrs_core.contributions.vehicles import Live, VehicleInput
@@ -30,16 +30,7 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     options, robot, clock = connecting(given.options), given.robot.id, live.clock
     assert isinstance(clock, RealClock)
     sheet = sheet_of_robot(given.program, given.robot, given.type, given.environment)
-    channel = live.links.get(robot, "") or options.channel or CHANNEL
-    reach = Reach(
-        options.interface,
-        channel,
-        options.bit_rate,
-        options.clock,
-        options.patience,
-        options.home_tolerance,
-        options.clearance,
-    )
+    channel = live.links.get(robot, "") or options.channel
     eyes = _eyes(given, options)
     sight = None if eyes is None or options.objects == "expected" else eyes.place
     orders = BehaviourOrders(given, sheet, Waters(given.program.frame.surface), sight)
@@ -47,11 +38,11 @@ def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     if faults is not None:
         faults.record(robot, noted_in(box))
     try:
-        return on_its_bus(
+        return ConnectedVehicle(
             robot,
             sheet,
             orders,
-            reach,
+            replace(options, channel=channel),
             FollowingClock(clock),
             live,
             {

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
-from auv_vessel.api import FIRST_SIGN
 from auv_vessel.body.surroundings import Surroundings, from_json
+from mmrs_auv.controllers.connected import Reach
 from mmrs_core.contributions.backend_options import one_of, read_options, switch, whole
 from mmrs_core.errors import UnreadableError
 
@@ -44,30 +44,17 @@ class Rehearsing:
 
 
 @dataclass(frozen=True, slots=True)
-class Connecting:
-    """How vehicles are reached.
+class Connecting(Reach):
+    """How vehicles are reached; `channel` is that of robots for which ``--connect`` says none.
 
     Attributes:
-        interface: of python-can. channel: of it, where ``--connect`` says none.
-        bit_rate: for adapters that need it; 0: default.
-        patience: real seconds to wait for a vehicle's first sign.
-        clock: ``real``, or ``bus``: as a simulated vehicle tells it; empty: by the speed-up of the run.
         objects: ``expected`` takes objects to be where they are expected.
         detections: UDP port on which the detections of cameras are received; 0: none.
-        clearance: metres ahead within which sonar must see nothing; 0: it may.
-        home_tolerance: metres that a vehicle may be from its home at first.
         inject: faults to inject.
     """
 
-    interface: str = "socketcand"
-    channel: str = ""
-    bit_rate: int = 0
-    patience: float = FIRST_SIGN
-    clock: str = ""
     objects: str = ""
     detections: int = 0
-    clearance: float = 0.0
-    home_tolerance: float = field(default=20.0)
     inject: str = ""
 
 

@@ -135,24 +135,33 @@ class ConnectedVehicle(CanVehicle):
         robot: str,
         sheet: Sheet,
         orders: Orders,
-        reached: tuple[ClosablePort, Connection],
         reach: Reach,
         clock: Clock,
         live: Live,
         start: Mapping[str, object],
         *,
         box: BlackBox | None,
-        eyes: Detections | None,
-        let_go: Callable[[], None],
+        eyes: Detections | None = None,
+        rehearsal: Rehearsal | None = None,
+        let_go: Callable[[], None] = lambda: None,
     ) -> None:
         """Send only that nothing is to move, until the robot is to get ready.
 
         Args:
             start: what its black box says first.
             eyes: detections of its cameras; None: objects are not detected.
+            rehearsal: of injected faults; None: none.
             let_go: called when it is let go of.
+
+        Raises:
+            OSError: there is no bus.
+            ValueError: its channel makes no sense.
         """
-        self._port, self._connection = reached
+        logging.getLogger("can").setLevel(logging.ERROR)
+        port = open_port(reach.interface, reach.channel, bit_rate=reach.bit_rate or None, say=live.say)
+        self._port: ClosablePort = port if rehearsal is None else injected(port, rehearsal, robot)
+        paced = reach.clock or ("bus" if clock.speedup != 1.0 else "real")
+        self._connection = Connection(sheet, self._port, "bus" if paced == "bus" else "real")
         super().__init__(
             robot,
             sheet,
@@ -226,46 +235,3 @@ class ConnectedVehicle(CanVehicle):
         if self._live.resumed or away <= self._reach.home_tolerance:
             return None
         return Fault(REFUSED, f"the vehicle is {away:.0f} m from its home: bring it home before it begins")
-
-
-def connected(
-    robot: str,
-    sheet: Sheet,
-    orders: Orders,
-    reach: Reach,
-    clock: Clock,
-    live: Live,
-    start: Mapping[str, object],
-    *,
-    box: BlackBox | None,
-    eyes: Detections | None = None,
-    rehearsal: Rehearsal | None = None,
-    let_go: Callable[[], None] = lambda: None,
-) -> ConnectedVehicle:
-    """Return a robot on its bus.
-
-    Args:
-        rehearsal: of injected faults; None: none.
-
-    Raises:
-        OSError: there is no bus.
-        ValueError: its channel makes no sense.
-    """
-    logging.getLogger("can").setLevel(logging.ERROR)
-    port = open_port(reach.interface, reach.channel, bit_rate=reach.bit_rate or None, say=live.say)
-    reached: ClosablePort = port if rehearsal is None else injected(port, rehearsal, robot)
-    paced = reach.clock or ("bus" if clock.speedup != 1.0 else "real")
-    connection = Connection(sheet, reached, "bus" if paced == "bus" else "real")
-    return ConnectedVehicle(
-        robot,
-        sheet,
-        orders,
-        (reached, connection),
-        reach,
-        clock,
-        live,
-        start,
-        box=box,
-        eyes=eyes,
-        let_go=let_go,
-    )

@@ -15,7 +15,7 @@ from auv_vessel.goals import Goal
 from auv_vessel.sheet import Sheet, Vector, from_json
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.ports import CHANNEL
-from mmrs_auv.controllers.connected import Reach, connected
+from mmrs_auv.controllers.connected import ConnectedVehicle, Reach
 from mmrs_auv.controllers.orders import Orders
 from mmrs_auv.controllers.program_orders import ProgramOrders
 from mmrs_auv.controllers.vehicle import CanVehicle
@@ -209,7 +209,7 @@ class CanDriver(Driver):
         start = start_of(robot, "can", "python-can", confirms=True)
         try:
             made.append(
-                connected(
+                ConnectedVehicle(
                     robot.id,
                     sheet,
                     orders,
