@@ -6,7 +6,7 @@ import threading
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from auv_vessel.goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
 from auv_vessel.hosting import FramePort, Pace, serve
@@ -94,7 +94,7 @@ class Craft:
         self._lost = sheet.extra.get("position.lost", POSITION_LOST)
         self._lock = threading.Lock()
         self._hearers = by_id({
-            "Position": self._hear_place, "Pose": self._hear_pose, "Velocity": self._hear_speed,
+            **dict.fromkeys(("Position", "Pose", "Velocity"), self._hear_state),
             "Depth": self._hear_depth, "Current": self._hear_current, "Health": self._hear_health,
             "Progress": self._hear_progress, "DeviceStatus": self._hear_device,
             **dict.fromkeys(EMERGENCIES, self._hear_emergency),
@@ -296,17 +296,9 @@ class Craft:
             if found is not None and (found.values["Drive"] == "FAULT") is not (number in self._state.failed):
                 self._state = self._state._replace(failed=self._state.failed ^ {number})
 
-    def _hear_place(self, found: Received, now: float) -> None:
-        north, east = _numbers(found, "North", "East")
-        self._state = self._state._replace(north=north, east=east)
-
-    def _hear_pose(self, found: Received, now: float) -> None:
-        roll, pitch, heading = _numbers(found, "Roll", "Pitch", "Heading")
-        self._state = self._state._replace(roll=roll, pitch=pitch, heading=heading)
-
-    def _hear_speed(self, found: Received, now: float) -> None:
-        surge, sway, heave = _numbers(found, "Surge", "Sway", "Heave")
-        self._state = self._state._replace(surge=surge, sway=sway, heave=heave)
+    def _hear_state(self, found: Received, now: float) -> None:
+        values: dict[str, Any] = {name.lower(): float(value) for name, value in found.values.items()}
+        self._state = self._state._replace(**values)
 
     def _hear_depth(self, found: Received, now: float) -> None:
         values = found.values
@@ -317,7 +309,7 @@ class Craft:
         self._state_at = now
 
     def _hear_current(self, found: Received, now: float) -> None:
-        north, east = _numbers(found, "North", "East")
+        north, east = float(found.values["North"]), float(found.values["East"])
         self._state = self._state._replace(current_north=north, current_east=east)
 
     def _hear_health(self, found: Received, now: float) -> None:
@@ -368,7 +360,3 @@ class Connection:
             serve(self.craft, port, clock, self._stop)
         except Exception as error:
             self.failure = error
-
-
-def _numbers(found: Received, *names: str) -> tuple[float, ...]:
-    return tuple(float(found.values[name]) for name in names)
