@@ -9,7 +9,6 @@ from itertools import islice
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.classes import bare_name
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element, Unknown, held, label_of, metaclass_of, place_of, root_of
@@ -19,89 +18,8 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import MOST_FAULTS
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.values.real import LARGEST_SINGLE, render_real, render_single
 from mmrs_core.languages.values.texts import described, shown
 
-Stands = Callable[[Element], bool]
-Sound = Callable[[Element, Stands], bool]
-"""Whether an element is sound; takes a function that returns whether another one is in a model."""
-
-
-def soundness(metaclass: Metaclass) -> Sound:
-    """Return the function for elements of exactly that metaclass."""
-    if "soundness" not in metaclass.compiled:
-        metaclass.compiled["soundness"] = _compiled(metaclass)
-    return metaclass.compiled["soundness"]  # type: ignore[return-value]  # the line above put it there
-
-
-def _compiled(metaclass: Metaclass) -> Sound:
-    bound: dict[str, object] = {}
-    lines = []
-    for index, feature in enumerate(metaclass.features):
-        bound[f"f{index}"] = feature
-        lines += [f"v = e.{bare_name(index)}", *_checks(index, feature, bound)]
-    source = "\n    ".join(["def sound(e, stands):", *lines, "return True"])
-    exec(compile(source, f"<soundness of {metaclass.name}>", "exec"), bound)  # noqa: S102  # no foreign text in it
-    made: Sound = bound["sound"]  # type: ignore[assignment]  # the source above defines it
-    return made
-
-
-def _checks(index: int, feature: Feature, bound: dict[str, object]) -> list[str]:
-    """Return the lines that return False unless the value ``v`` of a feature is sound."""
-    if (
-        feature.is_id
-        or feature.keys
-        or feature.opposite is not None
-        or (feature.many and not feature.is_reference)
-    ):
-        return [
-            "return False" if feature.lower else f"if v{'' if feature.many else ' is not None'}: return False"
-        ]
-    if feature.is_reference:
-        return _reference(index, feature, bound)
-    needed = feature.required and feature.default is None
-    missing = f"if v is None: {'return False' if needed else 'pass'}"
-    return [missing, f"elif not ({_usual(index, feature, bound)}): return False"]
-
-
-def _usual(index: int, feature: Feature, bound: dict[str, object]) -> str:
-    """Return the expression that is true for values of the usual class."""
-    kind = feature.type
-    assert not isinstance(kind, Metaclass)  # it is an attribute
-    if isinstance(kind, Enumeration):
-        bound[f"k{index}"] = frozenset(kind.names)
-        return f"v.__class__ is str and v in k{index}"
-    if kind.render is render_real:
-        return "v.__class__ is float and v - v == 0.0"  # neither infinite nor no number
-    if kind.render is render_single:
-        return f"v.__class__ is float and -{LARGEST_SINGLE!r} <= v <= {LARGEST_SINGLE!r}"
-    if kind.bits is not None:
-        return f"v.__class__ is int and {-(1 << kind.bits - 1)} <= v < {1 << kind.bits - 1}"
-    if kind.render is str or kind.python is bool:
-        return f"v.__class__ is {kind.python.__name__}"
-    return "False"
-
-
-def _reference(index: int, feature: Feature, bound: dict[str, object]) -> list[str]:
-    bound[f"k{index}"] = feature.type.interface  # type: ignore[union-attr]  # a reference has a class
-    if feature.containment:
-        good = f"isinstance(x, k{index}) and x._mmrs_container is e and x._mmrs_feature is f{index}"
-    else:
-        good = f"isinstance(x, k{index}) and stands(x)"
-    if not feature.many:
-        needed = "return False" if feature.required else "pass"
-        return [f"if v is None: {needed}", "else:", "    x = v", f"    if not ({good}): return False"]
-    lines = [f"if v is None: {'return False' if feature.lower else 'pass'}", "else:"]
-    lines.append(f"    if len(v) < {feature.lower}: return False")
-    if feature.upper > 0:
-        lines.append(f"    if len(v) > {feature.upper}: return False")
-    if feature.unique:
-        lines.append("    if len(set(v)) < len(v): return False")
-    return [*lines, "    for x in v:", f"        if not ({good}): return False"]
-
-
-_OFTEN = 16
-"""Compiling costs as much as asking all rules of so many elements."""
 _KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
 _FINITE = "give a number; leave the attribute out where the value is not known"
 
@@ -116,8 +34,7 @@ def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...
         UnreadableError: if there are too many to read.
     """
     check = _Check(model, registry)
-    doubtful = (element for element in model.elements() if not check.is_sound(element))
-    faults = (fault for element in doubtful for fault in check.element(element))
+    faults = (fault for element in model.elements() for fault in check.element(element))
     found = tuple(islice(faults, MOST_FAULTS + 1))
     if len(found) > MOST_FAULTS:
         message = f"more than {MOST_FAULTS} faults; the first is: {found[0].message}"
@@ -131,21 +48,7 @@ class _Check:
         self._broken = model.broken
         self._roots = {id(root) for root in model.roots}
         self._ids: dict[object, Element] = {}
-        self._sound: dict[type, Sound] = {}
-        self._seen: dict[type, int] = {}
         self._standing: set[Element] = set()
-
-    def is_sound(self, element: Element) -> bool:
-        """Return whether an element is beyond doubt; only asked once a class occurs often."""
-        kind = type(element)
-        sound = self._sound.get(kind)
-        if sound is not None:
-            return sound(element, self._stands)
-        count = self._seen[kind] = self._seen.get(kind, 0) + 1
-        metaclass = kind._mmrs_metaclass
-        if count == _OFTEN and metaclass is not None and self._installed(metaclass):
-            self._sound[kind] = soundness(metaclass)
-        return False
 
     def element(self, element: Element) -> Iterator[Diagnostic]:
         if isinstance(element, Unknown):

@@ -5,10 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages import behaviour, conformance
-from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages import behaviour
 from mmrs_core.languages.element import Element, held, metaclass_of, path_of
-from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.languages.xmi import quick_reader
@@ -182,32 +180,3 @@ def test_a_model_whose_file_gave_identifiers_keeps_them(zoo, zoo_text):
     model = read_text(zoo_text(lions), "a.xmi", zoo)
     assert not isinstance(writer_for(model.roots, zoo, None), QuickWriter)
     assert to_xmi(model.roots, zoo).count(b"xmi:id=") == MANY
-
-
-ODD_VALUES = {
-    **ODD_MOVES,
-    "a true number": lambda move: setattr(move, "distance", True),
-    "an infinite number": lambda move: setattr(move, "distance", float("inf")),
-    "a target without a place": lambda move: setattr(move, "target", behaviour.GeoCoordinate(latitude=1.0)),
-    "a target of a wrong class": lambda move: setattr(move, "target", move),
-    "a heading of a wrong class": lambda move: setattr(move, "heading", behaviour.Slot(name="s")),
-    "another's heading": lambda move: type(move)._mmrs_slots["heading"].__set__(move, behaviour.Heading()),
-}
-
-
-@pytest.mark.parametrize("odd", ODD_VALUES.values(), ids=ODD_VALUES)
-def test_an_odd_element_after_many_alike_is_judged_as_if_it_were_alone(odd, core, monkeypatch):
-    model = Model("a.xmi", (flight(core, odd),))
-    quickly = check_conformance(model, core)
-    monkeypatch.setattr(conformance, "_OFTEN", 10**9)
-    assert quickly == check_conformance(model, core)
-
-
-def test_lists_that_are_too_short_or_hold_something_twice_are_found_after_many_that_do_not(core):
-    slots = [behaviour.Slot(name=f"s{number}") for number in range(MANY)]
-    waits = [behaviour.MulticastNotify(slots=slots[:2]) for _ in range(MANY)]
-    waits[-2].slots = []
-    waits[-1].slots = [slots[0], slots[0]]
-    stop = behaviour.Stop(postActions=waits)
-    root = behaviour.Behaviour(robots=[behaviour.Robot(id="r", typeName="t", slots=slots, moves=[stop])])
-    assert [fault.code for fault in check_conformance(Model("", (root,)), core)] == ["ECO001", "ECO006"]

@@ -1,4 +1,4 @@
-"""An odd value after many usual ones, when reader, writers and checks have compiled functions for it."""
+"""An odd value after many usual ones, when reader and writers have compiled functions for it."""
 
 from __future__ import annotations
 
