@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
-from mmrs_core.languages.json_form.rows import Row, rows_of
 from mmrs_core.languages.json_form.scalars import written
 from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE, key_of, quoted
 from mmrs_core.languages.json_form.tree import formatted, laid_out
@@ -42,7 +41,6 @@ class JsonWriter:
         self._addresses = Addresses(roots, file)
         self._prefixes: dict[str, str] = {}
         self._pieces: list[str] = []
-        self._rows: dict[Metaclass, tuple[Row, ...]] = {}
         self._kinds: dict[Metaclass, str] = {}
         sources = {root._mmrs_source for root in roots}
         home = sources.pop() if len(sources) == 1 else None
@@ -99,29 +97,16 @@ class JsonWriter:
         metaclass = metaclass_of(element)
         members = self._own(element, metaclass, feature)
         children: list[_Children] = []
-        rows = self._rows.get(metaclass)
-        if rows is None:
-            rows = self._rows[metaclass] = rows_of(metaclass)
-        for each, read, key, quiet, usual, text_of in rows:
-            # this runs for every feature of every element
-            try:
-                value = read(element)
-            except AttributeError:
-                value = None
-            if value is None and quiet:
+        for each in metaclass.features:
+            if not each.stored or (each.is_container and not self._addresses.stands_apart(element)):
                 continue
-            text = text_of(value) if value.__class__ is usual and value != each.default else None
-            if text is not None:
-                members.append(key + text)
-            elif each.is_container and not self._addresses.stands_apart(element):
-                continue
-            elif not holds(element, each):
+            if not holds(element, each):
                 if each.unsettable and self._addresses.is_blank(element, each):
-                    members.append(f"{key}{'[]' if each.many else 'null'}")
+                    members.append(f"{_key(each)}: {'[]' if each.many else 'null'}")
             elif each.containment:
                 children.append((each, held(element, each)))
             else:
-                members.append(key + self._plain(element, each, held(element, each)))
+                members.append(f"{_key(each)}: {self._plain(element, each, held(element, each))}")
         return members, children
 
     def _own(self, element: Element, metaclass: Metaclass, feature: Feature | None) -> list[str]:
