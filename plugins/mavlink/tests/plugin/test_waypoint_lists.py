@@ -50,21 +50,6 @@ def fields(item):
     return (item.seq, item.frame, item.command, *params, item.x, item.y, item.z)
 
 
-def test_pymavlink_reads_each_item_as_the_plan_for_qgroundcontrol_has_it(tmp_path):
-    given = target_input(two_drones())
-    lists = {file.path: file.content.decode() for file in render(WPL, given, allow_lossy=True)}
-    plans = [file for file in render(QGC_PLAN, given, allow_lossy=True) if file.path.endswith(".plan")]
-    assert len(plans) == 2
-    for file in plans:
-        plan = json.loads(file.content)["mission"]
-        found = loaded(mavwp.MAVWPLoader(), lists[file.path.replace(".plan", ".waypoints")], tmp_path)
-        expected = [(0, 0, 16, 0.0, 0.0, 0.0, 0.0, *plan["plannedHomePosition"])]
-        expected += [
-            (each["doJumpId"], each["frame"], each["command"], *each["params"]) for each in plan["items"]
-        ]
-        assert [fields(item) for item in found] == expected
-
-
 def test_pymavlink_reads_the_fence_and_the_rally_points_beside_the_mission(tmp_path):
     given = target_input(two_drones())
     plan = json.loads(render(QGC_PLAN, given, allow_lossy=True)[0].content)
