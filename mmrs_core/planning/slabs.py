@@ -8,9 +8,9 @@ from typing import TypeAlias
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import Polygon
 
 Floats: TypeAlias = NDArray[np.float64]
+Shapes: TypeAlias = NDArray[np.object_]
 Side: TypeAlias = tuple[float, float]
 """Heights of a slanted line at the left and at the right side of a slab."""
 
@@ -53,17 +53,16 @@ class Cell:
         )
 
 
-def cells(target: shapely.Geometry, free: shapely.Geometry) -> list[list[Cell]]:
+def cells(wanted: Floats, open_space: Floats) -> list[list[Cell]]:
     """Return the cells of a strip, by slab from left to right, from the target's one end to its other.
 
     A cell is as high as the free space. Whatever of the target is not inside of it (by rounding) makes a
     cell of its own. Slabs without any target are among those returned.
 
     Args:
-        target: what is to be covered of the strip.
-        free: where a robot may be; includes the target.
+        wanted: edges of what is to be covered of the strip.
+        open_space: edges of where a robot may be; that includes what is to be covered.
     """
-    wanted, open_space = _edges(target), _edges(free)
     if not len(wanted):
         return []
     sides = np.unique(np.concatenate([wanted[:, [0, 2]].ravel(), open_space[:, [0, 2]].ravel()]))
@@ -112,21 +111,17 @@ def _bands(edges: Floats, sides: Floats) -> list[list[Band]]:
     return slabs
 
 
-def _edges(shape: shapely.Geometry) -> Floats:
-    """Return (n, 4) edges (x1, y1, x2, y2) of all rings with x1 < x2; upright edges are left out."""
-    rings = [
-        shapely.get_coordinates(ring)
-        for piece in shapely.get_parts(shape)
-        if isinstance(piece, Polygon)
-        for ring in (piece.exterior, *piece.interiors)
-    ]
-    if not rings:
-        return np.empty((0, 4))
-    edges = np.concatenate([np.hstack([ring[:-1], ring[1:]]) for ring in rings])
+def edges_of(shapes: Shapes) -> list[Floats]:
+    """Return (n, 4) edges (x1, y1, x2, y2) of all rings of each shape, with x1 < x2; none that is upright."""
+    pieces, shape_of = shapely.get_parts(shapes, return_index=True)
+    rings, piece_of = shapely.get_rings(pieces, return_index=True)
+    points, ring_of = shapely.get_coordinates(rings, return_index=True)
+    edges = np.hstack([points[:-1], points[1:]])
     backwards = edges[:, 0] > edges[:, 2]
     edges[backwards] = edges[backwards][:, [2, 3, 0, 1]]
-    slanted: Floats = edges[edges[:, 2] - edges[:, 0] > TINY]
-    return slanted
+    kept = (ring_of[:-1] == ring_of[1:]) & (edges[:, 2] - edges[:, 0] > TINY)
+    owners = shape_of[piece_of[ring_of[:-1][kept]]]
+    return np.split(edges[kept], np.searchsorted(owners, np.arange(1, len(shapes))))
 
 
 def _part(side: Side, begin: float, end: float) -> Side:

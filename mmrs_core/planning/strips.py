@@ -8,17 +8,17 @@ to be swept at an angle are turned beforehand.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
 from math import ceil
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.planning.levels import legs_over
 from mmrs_core.planning.lines import Place, Swath, swath_over
-from mmrs_core.planning.slabs import Cell, cells
+from mmrs_core.planning.slabs import Cell, cells, edges_of
 
 _GAP = 1.5
 """Widths of a gap that a swath crosses: over a wider one, two swaths and their turns are shorter."""
@@ -89,21 +89,21 @@ def _chains_of(
     target: BaseGeometry, width: float, blocked: BaseGeometry, shift: float | None
 ) -> Iterator[list[Cell]]:
     left, bottom, right, top = shapely.bounds(target).tolist()
-    for low, high in _levels(bottom, top, width, shift):
-        strip = shapely.box(left - 1.0, low, right + 1.0, high)
-        inside = shapely.intersection(target, strip)
-        for row in _rows(cells(inside, shapely.difference(strip, blocked))):
+    levels = _levels(bottom, top, width, shift)
+    strips = shapely.box(left - 1.0, levels[:-1], right + 1.0, levels[1:])
+    wanted = edges_of(shapely.intersection(target, strips))
+    for slabs in map(cells, wanted, edges_of(shapely.difference(strips, blocked))):
+        for row in _rows(slabs):
             yield from _chains(row, _GAP * width)
 
 
-def _levels(bottom: float, top: float, width: float, shift: float | None) -> Iterator[tuple[float, float]]:
-    """Yield the strips' (low, high): of one height, not over `width`, as few as can be."""
+def _levels(bottom: float, top: float, width: float, shift: float | None) -> NDArray[np.float64]:
+    """Return the heights between which strips are: of one height, not over `width`, as few as can be."""
     count = max(1, ceil((top - bottom) / width - _ROUNDING))
     if shift is not None:
         bottom -= shift * (count * width - (top - bottom))
         top = bottom + count * width
-    edges = np.linspace(bottom, top, count + 1).tolist()
-    yield from pairwise(edges)
+    return np.linspace(bottom, top, count + 1)
 
 
 def _rows(slabs: Sequence[list[Cell]]) -> list[list[Cell]]:

@@ -20,6 +20,9 @@ _KICKS = 20
 _KICKED = 1000
 """Strokes at most, in all tours together, that are improved again from somewhere else."""
 
+_AT_ONCE = 1000
+"""Pairs of a run of strokes and a place for it that are looked at together."""
+
 _SHORTER = 1e-6
 """Metres by which a tour must become shorter to be kept."""
 
@@ -169,24 +172,47 @@ class _Tour:
         best = self
         count = len(self.index)
         for size in range(1, min(_RUN, count - 1) + 1):
-            for i in range(count - size + 1):
-                best = best._with_move(i, i + size)
+            i, step = 0, max(1, _AT_ONCE // count)
+            while i <= count - size:
+                last = min(i + step, count - size + 1)
+                found = best._first_move(i, last, size)
+                best, i = (best, last) if found is None else found
         return best
 
-    def _with_move(self, i: int, j: int) -> _Tour:
-        """Move strokes i to j - 1 to where that shortens the tour most."""
-        head, tail = self._enter[i], self._leave[j - 1]
-        left_out = self._gaps[i] + self._gaps[j] - float(_far(self._came[i], self._next[j]))
-        onwards = _far(self._came, head) + _far(tail, self._next) - self._gaps
-        backwards = _far(self._came, tail) + _far(head, self._next) - self._gaps
+    def _first_move(self, first: int, last: int, size: int) -> tuple[_Tour, int] | None:
+        """Move the first run that becomes shorter to where that shortens the tour most.
+
+        Args:
+            first, last: strokes with which runs begin, the last one not included.
+            size: strokes of a run.
+
+        Returns:
+            the tour, and the stroke with which the next run begins; None: no move helps.
+        """
+        i = np.arange(first, last)
+        heads, tails = self._enter[i][:, None], self._leave[i + size - 1][:, None]
+        left_out = self._gaps[i] + self._gaps[i + size] - _far(self._came[i], self._next[i + size])
+        onwards = _far(self._came, heads) + _far(tails, self._next) - self._gaps
+        backwards = _far(self._came, tails) + _far(heads, self._next) - self._gaps
         added = np.minimum(onwards, backwards)
-        added[i : j + 1] = np.inf
-        to = int(np.argmin(added))
-        if added[to] >= left_out - _SHORTER:
-            return self
-        back = bool(backwards[to] < onwards[to])
+        places = np.arange(len(self._gaps))
+        added[(places >= i[:, None]) & (places <= i[:, None] + size)] = np.inf
+        to = np.argmin(added, axis=1)
+        rows = np.arange(len(i))
+        shorter = np.flatnonzero(added[rows, to] < left_out - _SHORTER)
+        if not len(shorter):
+            return None
+        row = int(shorter[0])
+        best = int(to[row])
+        return self._moved(first + row, size, best, back=bool(backwards[row, best] < onwards[row, best])), (
+            first + row + 1
+        )
+
+    def _moved(self, i: int, size: int, to: int, *, back: bool) -> _Tour:
+        """Return the tour with a run of strokes before another one, either way round."""
+        j = i + size
         run = np.arange(i, j)[:: -1 if back else 1]
         rest = np.r_[0:i, j : len(self.index)]
-        before = to if to < i else to - (j - i)
+        before = to if to < i else to - size
         places = np.concatenate([rest[:before], run, rest[before:]])
         return self.arranged(places, (places >= i) & (places < j) & back)
