@@ -90,8 +90,11 @@ class Reach:
         return found
 
     def contains(self, points: Sequence[Position], spare: float = -SLACK) -> bool:
-        """Return whether balls cover a polyline of one point or more."""
-        return bool(self.covers(legs_of(points), spare).all())
+        """Return whether balls cover a polyline of one point or more; mostly a single one does."""
+        balls = zip(self.centres, self.ranges, strict=True)
+        shorter = self.error + spare + SLACK
+        alone = any(all(dist(place, at) <= far - shorter for place in points) for at, far in balls)
+        return alone or bool(self.covers(legs_of(points), spare).all())
 
     def turns(self, height: float) -> Floats:
         """Return (n, 2): where routes at a height may turn from one ball into another: just inside."""

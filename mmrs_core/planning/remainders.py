@@ -73,7 +73,7 @@ class Remainders:
         self._works = works
         self._covered: dict[int, Shapes] = {}
         self._ground: dict[int, Shapes] = {}
-        self._patches: dict[_Part, list[frozenset[_Part]]] = {}
+        self._patches: dict[_Part, list[int]] = {}
         self._under: dict[tuple[int, int], list[list[int]]] = {}
 
     def left(self, sort: int, before: Sequence[Turn]) -> frozenset[int]:
@@ -85,21 +85,26 @@ class Remainders:
 
     def _bare(self, sort: int, before: Sequence[Turn]) -> Iterator[int]:
         """Yield the parts under which some ground is not covered by what others have done."""
-        done = {(turn.sort, part) for turn in before for part in turn.done}
+        done = sum(self._bit(turn.sort, part) for turn in before for part in turn.done)
         for part in range(len(self.parts[sort])):
-            if any(done.isdisjoint(by) for by in self._patches_of(sort, part)):
+            if not all(done & by for by in self._patches_of(sort, part)):
                 yield part
 
-    def _patches_of(self, sort: int, part: int) -> list[frozenset[_Part]]:
-        """Return, for each patch of the ground under a part, the parts of other sorts that cover it.
+    def _bit(self, sort: int, part: int) -> int:
+        """Return the bit of a part in sets of parts, which are numbers: very many are compared."""
+        return 1 << sum(map(len, self.parts[:sort])) + part
+
+    def _patches_of(self, sort: int, part: int) -> list[int]:
+        """Return, for each patch of the ground under a part, the set of parts of other sorts that cover it.
 
         Patches that are covered wherever another one is are left out, and those that are rounding.
         """
         if (sort, part) not in self._patches:
-            own, alike = self._ground_of(sort)[part], dict[bytes, set[_Part]]()
+            own, alike = self._ground_of(sort)[part], dict[bytes, int]()
             for other in range(len(self.parts)):
                 for each in self._under_of(sort, other)[part] if other != sort else ():
-                    alike.setdefault(shapely.to_wkb(self._covered_by(other)[each]), set()).add((other, each))
+                    shape = shapely.to_wkb(self._covered_by(other)[each])
+                    alike[shape] = alike.get(shape, 0) | self._bit(other, each)
             shapes = shapely.from_wkb(list(alike))
             inner = shapely.intersection(shapely.boundary(shapes), own)
             edges = shapely.union_all([shapely.boundary(own), *inner], grid_size=GRID)
@@ -108,11 +113,11 @@ class Remainders:
             whole = np.cumsum(shapely.area(patches)) > _ROUNDING * (1.0 + own.area)
             inside = shapely.point_on_surface(patches[whole])
             inside = inside[shapely.covers(own, inside)]
-            by: list[set[_Part]] = [set() for _ in inside]
+            by = [0 for _ in inside]
             for others, shape in zip(alike.values(), shapes, strict=True):
                 for index in np.flatnonzero(shapely.covers(shape, inside)).tolist():
                     by[index] |= others
-            self._patches[sort, part] = _smallest(map(frozenset, by))
+            self._patches[sort, part] = _smallest(by)
         return self._patches[sort, part]
 
     def _ground_of(self, sort: int) -> Shapes:
@@ -164,11 +169,11 @@ class Remainders:
                 yield part
 
 
-def _smallest(sets: Iterable[frozenset[_Part]]) -> list[frozenset[_Part]]:
-    """Return those sets that hold no other one."""
-    found: list[frozenset[_Part]] = []
-    for each in sorted(set(sets), key=len):
-        if not any(other <= each for other in found):
+def _smallest(sets: Iterable[int]) -> list[int]:
+    """Return those sets of bits that hold no other one."""
+    found: list[int] = []
+    for each in sorted(set(sets), key=int.bit_count):
+        if not any(other & each == other for other in found):
             found.append(each)
     return found
 
