@@ -1,1 +1,1 @@
-"""Figures of a robot type from the log of one flight: readers of logs, what the flight was, and estimates."""
+"""Figures of a robot type from the logs of flights: readers of logs, what the flight was, and estimates."""

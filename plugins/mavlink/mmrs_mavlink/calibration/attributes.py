@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from .figures import MISSION, STEP, Figure
+from .figures import MISSION, STEP, Figure, found_by
 
 CAPABILITY = ("lifetime", "maxTurnRate", "launchTime", "recoveryTime", "landingRate", "landingHeight")
 """Attributes of a movement capability that a flight tells."""
@@ -42,10 +42,8 @@ def written(figures: Iterable[Figure], names: Iterable[str], flown_as: str = "")
         names: that are asked for, in the order in which they are written.
         flown_as: how the legs were flown.
     """
-    found = {
-        each.name: each for each in figures if each.values and not each.doubt and each.flown_as == flown_as
-    }
-    return {name: shown(max(0.0, found[name].median)) for name in names if name in found}
+    found = found_by(each for each in figures if each.flown_as == flown_as)
+    return {name: shown(found[name]) for name in names if name in found}
 
 
 def element_lines(figures: tuple[Figure, ...]) -> Iterator[str]:

@@ -1,13 +1,15 @@
-"""Figures of a robot type from one flight: each with its unit, its number of values, median and spread."""
+"""Figures of a robot type from flights: each with its unit, its number of values, median and spread."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import degrees, inf, isfinite
+from math import degrees, inf, isfinite, radians, tan
 
 import numpy as np
 
+from mmrs_core.grounding.robots import LEG_FIGURES
+from mmrs_core.scene import Capability
 from mmrs_core.scene.timing import STANDING, Rates
 from mmrs_runtime.timing import LegTiming
 
@@ -20,6 +22,7 @@ from .motion import (
     EVEN_SECONDS,
     Gain,
     Leg,
+    Passage,
     climbs_of,
     corners_passed,
     gain_of,
@@ -43,8 +46,15 @@ CHARGED = 0.02
 
 _USUAL_STILL = 0.3
 
+FASTEST = 1000.0
+"""Metres per second that no vehicle makes."""
+
 CLEAR = 0.5
 """Share of a leg's thrust that the leg before may have left, or against it, for the lag to be judged."""
+
+SLOWED, TURNED_ROUND = 0.9, radians(150.0)
+"""Share of the speed of its legs at which a corner is passed at most for which the vehicle slowed down; and
+turn up to which that shows a circle."""
 
 COULOMBS = 3.6
 """In a milliampere-hour."""
@@ -57,6 +67,11 @@ FROM_ALL = frozenset({"overshoot", "lifetime"})
 
 WIDEST, NOISE = 0.5, 1.0
 """Spread of a figure at most, as a share of its median, and seconds that times may spread in any case."""
+
+HOLDS = "what the type states, or else its autopilot's default, is within the spread, and holds"
+
+Current = Callable[[str, str], float | None]
+"""What the type states of an attribute, by how legs are flown, or empty; None: nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,28 +121,74 @@ def _doubt(values: Sequence[float], unit: str = "") -> str:
     return "its values differ by more than half of their median" if high - low > most else ""
 
 
-def _sure(values: Sequence[float], usual: float) -> float:
-    """Return the median of values, or what is usual where it is in doubt."""
-    return usual if isfinite(usual) and _doubt(values) else float(np.median(values))
+def nothing(_name: str, _flown_as: str) -> None:
+    """State nothing of any attribute."""
+
+
+def held(
+    profile: VehicleProfile | None, flown_as: str, current: Current, found: Mapping[str, float] | None = None
+) -> LegTiming:
+    """Return how legs are taken, by figures that were found, by the type, or else by its autopilot."""
+    pacing = UNKNOWN if profile is None else profile.pacing
+    stated = {name: current(name, flown_as) for name in LEG_FIGURES} | dict(found or {})
+    known = {LEG_FIGURES[name]: value for name, value in stated.items() if value is not None}
+    if "acceleration" in known:
+        known.setdefault("deceleration", known["acceleration"])
+    capability = Capability(
+        payload=0.0,
+        lifetime=None,
+        speed=(0.0, FASTEST),
+        acceleration=current("maxAcceleration", ""),
+        climb_rate=current("maxClimbRate", ""),
+        descent_rate=current("maxDescentRate", ""),
+        leg_timings={flown_as: known},
+    )
+    usual = pacing.mission if flown_as == MISSION and pacing.mission is not None else pacing.step
+    return capability.timing(flown_as, usual)
+
+
+def _holds(figure: Figure, timing: LegTiming) -> bool:
+    """Return whether a figure of legs does not contradict what is known without it."""
+    if figure.name not in LEG_FIGURES or not figure.values:
+        return False
+    value = getattr(timing, LEG_FIGURES[figure.name])
+    low, high = figure.spread
+    return low <= (timing.acceleration if value is None else value) <= high
+
+
+def found_by(figures: Iterable[Figure]) -> dict[str, float]:
+    """Return the medians of the figures that are beyond doubt, by name; one less than 0 is 0."""
+    return {each.name: max(0.0, each.median) for each in figures if each.values and not each.doubt}
 
 
 def fastest(values: Sequence[float], part: float = 0.9) -> list[float]:
     """Return the values that come near to the largest one: others were not meant to be as fast."""
-    return [each for each in values if each >= part * max(values)]
+    most = max(values, default=0.0)
+    return [each for each in values if each >= part * most]
 
 
-def figures_of(flight: Flight, capacity: float | None = None) -> tuple[Figure, ...]:
-    """Return the figures of a flight: those of each way of flying legs, then those of all.
+def unbusy(seconds: Sequence[float]) -> list[float]:
+    """Return the times that come near to the shortest tenth: at others the vehicle had something to do."""
+    shortest = float(np.percentile(seconds, 10.0)) if seconds else 0.0
+    return [each for each in seconds if each <= shortest + NOISE]
+
+
+def figures_of(
+    flights: Sequence[Flight], capacity: float | None = None, current: Current = nothing
+) -> tuple[Figure, ...]:
+    """Return the figures of flights of a vehicle: those of each way of flying legs, then those of all.
 
     Args:
-        capacity: of the vehicle's batteries, in coulombs; None: as the log tells.
+        flights: one at least.
+        capacity: of the vehicle's batteries, in coulombs; None: as the logs tell.
+        current: what the type states.
     """
     return (
-        *_leg_figures(flight, STEP),
-        *_leg_figures(flight, MISSION),
-        _turn_rate(flight),
-        *_end_figures(flight),
-        *_energy_figures(flight, capacity),
+        *_leg_figures(flights, STEP, current),
+        *_leg_figures(flights, MISSION, current),
+        _turn_rate(flights),
+        *_end_figures(flights),
+        *_energy_figures(flights, capacity),
     )
 
 
@@ -164,109 +225,114 @@ def levels_of(flight: Flight, flown_as: str) -> _Levels:
     return _Levels(chosen, speeds, tuple(found), "", least)
 
 
-def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
-    level = levels_of(flight, flown_as)
-    still = _still(flight.profile)
+def _leg_figures(flights: Sequence[Flight], flown_as: str, current: Current) -> Iterator[Figure]:
+    levels = [(flight, levels_of(flight, flown_as)) for flight in flights]
+    flown = [each for each in levels if not each[1].missing]
+    profile = flights[0].profile
+    slowest, known = still(profile), held(profile, flown_as, current)
 
     def figure(name: str, unit: str, values: Iterable[float], missing: str) -> Figure:
-        return _figure(name, unit, () if level.missing else values, level.missing or missing, flown_as)
+        found = _figure(name, unit, values, missing if flown else levels[0][1].missing, flown_as)
+        return replace(found, doubt=HOLDS) if not found.doubt and _holds(found, known) else found
 
-    fitting = [each for each in level.ramps if each.fits]
+    fitting = [each for _, level in flown for each in level.ramps if each.fits]
     rising = [each for each in fitting if each.rising]
     jerks = [each.jerk for each in rising]
-    speeding = [each.acceleration for each in rising if each.keeps]
-    kept = plateaus_in(flight.times, np.where(level.chosen, level.speeds, 0.0), 2.0 * still, EVEN_SECONDS)
-    tops = [each.value for each in kept]
-    slowing = _decelerations(flight, level, fitting, float(np.median(jerks)) if jerks else 0.0)
+    jerk = float(np.median(jerks)) if jerks else inf
+    tops = fastest([each for part in flown for each in _kept(*part, 2.0 * slowest)])
+    speeding = fastest([each.acceleration for each in rising if each.keeps], 0.8)
+    slowing = fastest([each for part in flown for each in _decelerations(*part, jerk)], 0.8)
     short = "no leg was long enough for it"
-    yield figure("maxSpeed", "m/s", fastest(tops) if tops else (), "no speed was kept for 2 s")
-    yield figure("maxAcceleration", "m/s²", fastest(speeding, 0.8) if speeding else (), short)
-    yield figure(
-        "maxDeceleration",
-        "m/s²",
-        fastest(slowing, 0.8) if slowing else (),
-        f"{short}, so take it for maxAcceleration",
-    )
-    yield figure("maxJerk", "m/s³", jerks, "no change of speed is an S-curve")
-    yield from _vertical_figures(flight, level, figure, float(np.median(jerks)) if jerks else inf)
+    yield figure("maxSpeed", "m/s", tops, "no speed was kept for 2 s")
+    up = figure("maxAcceleration", "m/s²", speeding, short)
+    down = figure("maxDeceleration", "m/s²", slowing, f"{short}, so take it for maxAcceleration")
+    if {up.doubt, down.doubt} == {"", HOLDS}:  # a type that states one of them states both
+        up, down = replace(up, doubt=""), replace(down, doubt="")
+    changing = figure("maxJerk", "m/s³", jerks, "no change of speed is an S-curve")
+    yield from (up, down, changing)
+    yield from _vertical_figures(flown, figure, jerk)
+    timing = held(profile, flown_as, current, found_by((up, down, changing)))
     if flown_as == MISSION:
-        passed = corners_passed(flight, level.chosen, max(2.0 * still, level.least))
-        yield figure("cornerRadius", "m", passed, "no corner was passed without a stop")
-    overshoot: float | None = None
-    settled = list[float]()
-    straight = list(legs_of(flight, level.ramps, still))
-    gains = _gains(flight, straight)
-    if speeding and jerks and tops:
-        usual = usual_timing(flight.profile, flown_as)
-        a, j = _sure(fastest(speeding, 0.8), usual.acceleration), _sure(jerks, usual.jerk)
-        d = (
-            _sure(fastest(slowing, 0.8), usual.braking)
-            if slowing
-            else usual.braking
-            if usual.braking < inf
-            else a
-        )
-        timing = LegTiming(acceleration=a, deceleration=d, jerk=j)
-        legs = [each for each in straight if isfinite(each.done - each.begun)]
-        lag, within = usual.lag, usual.lag_within
-        if gains:
-            lag = float(np.median([each.lag for each in gains]))
-            within = float(np.median([each.seconds for each in gains]))
-        timing = replace(timing, lag=lag, lag_within=within)
-        overshoot, settled = _beside(legs, timing, max(tops), usual.overshoot)
+        passed = [
+            each
+            for flight, level in flown
+            for each in corners_passed(flight, level.chosen, max(2.0 * slowest, level.least))
+        ]
+        radii = [each for corner in passed if (each := corner_radius(corner, timing)) is not None]
+        none = "no corner was passed without a stop" if not passed else "no corner was passed more slowly"
+        yield figure("cornerRadius", "m", radii, none)
+    straight = [(flight, list(legs_of(flight, level.ramps, slowest))) for flight, level in flown]
+    gains = [each for part in straight for each in _gains(*part)]
+    if gains:
+        lags = [each.lag for each in gains], [each.seconds for each in gains]
+        timing = replace(timing, lag=float(np.median(lags[0])), lag_within=float(np.median(lags[1])))
+    legs = [[each for each in part if isfinite(each.done - each.begun)] for _, part in straight]
+    limited = timing.acceleration < inf
+    overshoot, settled = _beside(legs, replace(timing, settling=0.0)) if limited else (None, [])
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
     unclear = "the legs do not show it: fly short and long ones" if settled else missing
-    if not (speeding and jerks and tops):
-        missing = unclear = "no acceleration and speed to judge legs by"
+    if not limited:
+        missing = unclear = "no acceleration to judge legs by"
     yield figure("overshoot", "s", () if overshoot is None else (overshoot,), unclear)
-    yield figure("settlingTime", "s", settled, missing)
+    yield figure("settlingTime", "s", unbusy(settled), missing)
     even = "no speed was kept for long that the vehicle came near to only with time"
     yield figure("lag", "s", (each.lag for each in gains), even)
     yield figure("lagTime", "s", (each.seconds for each in gains), even)
 
 
-def usual_timing(profile: VehicleProfile | None, flown_as: str) -> LegTiming:
-    """Return how a vehicle's autopilot takes legs, whose lag counts where the legs do not show it."""
-    pacing = UNKNOWN if profile is None else profile.pacing
-    return pacing.mission if flown_as == MISSION and pacing.mission is not None else pacing.step
+def corner_radius(corner: Passage, timing: LegTiming) -> float | None:
+    """Return the radius of a corner as it counts for the autopilot; None where the corner does not show it.
+
+    That is how near it comes, or where it slows down for corners, the tangent of the circle that it goes
+    round as slowly.
+    """
+    if not timing.slows_down:
+        return corner.nearest
+    if corner.speed > SLOWED * corner.beside or corner.turn > TURNED_ROUND:
+        return None
+    return corner.speed**2 * tan(corner.turn / 2.0) / (timing.turning * timing.acceleration)
 
 
-def _still(profile: VehicleProfile | None) -> float:
+def _kept(flight: Flight, level: _Levels, least: float) -> Iterator[float]:
+    """Yield the level speeds of at least so much that were kept."""
+    speeds = np.where(level.chosen, level.speeds, 0.0)
+    yield from (each.value for each in plateaus_in(flight.times, speeds, least, EVEN_SECONDS))
+
+
+def still(profile: VehicleProfile | None) -> float:
+    """Return the metres per second up to which a vehicle stands."""
     return profile.still if profile is not None else _USUAL_STILL
 
 
-def _decelerations(flight: Flight, level: _Levels, fitting: Iterable[Ramp], jerk: float) -> list[float]:
-    """Return how fast the vehicle slows down, by curves of the jerk at which it speeds up."""
-    if jerk <= 0.0:
-        return []
-    slowing = [each for each in fitting if not each.rising]
-    found = [(each, with_jerk(flight.times, level.speeds, each, jerk)) for each in slowing]
-    return [value for each, value in found if each.change * jerk >= 1.5 * value**2]
+def _decelerations(flight: Flight, level: _Levels, jerk: float) -> Iterator[float]:
+    """Yield how fast the vehicle slows down, by curves of the jerk at which it speeds up."""
+    for each in level.ramps if jerk < inf else ():
+        if each.fits and not each.rising:
+            value = with_jerk(flight.times, level.speeds, each, jerk)
+            if each.change * jerk >= 1.5 * value**2:
+                yield value
 
 
-def _beside(
-    legs: Sequence[Leg], timing: LegTiming, fastest: float, usual: float
-) -> tuple[float | None, list[float]]:
+def _beside(legs: Sequence[Sequence[Leg]], timing: LegTiming) -> tuple[float | None, list[float]]:
     """Return how far a vehicle goes beyond its targets, and what legs take beside their S-curves and that.
 
     A vehicle that goes beyond its target by a share of its speed takes the longer, the faster the leg was.
-    Where the legs do not show that clearly, it is unknown: None, and they go beyond it as usual.
+    Where the legs do not show that clearly, it is unknown: None, and they go beyond it as far as is known.
 
     Args:
-        timing: acceleration, deceleration and jerk.
-        fastest: speed that was kept.
-        usual: how far its autopilot goes beyond targets.
+        legs: of each flight.
+        timing: as far as is known, without settling.
     """
 
     def going(hundredths: int) -> LegTiming:
         return replace(timing, overshoot=hundredths / 100.0)
 
-    tops = [each.speeding_up.high for each in legs]
-    plain = lefts(legs, replace(timing, overshoot=usual), fastest)
-    if len(legs) < FEWEST or max(tops) < 1.5 * min(tops):
+    tops = [each.speeding_up.high for flight in legs for each in flight]
+    plain = lefts(legs, timing)
+    if len(tops) < FEWEST or max(tops) < 1.5 * min(tops):
         return None, plain
-    best = min(range(1, 31), key=lambda number: _width(lefts(legs, going(number), fastest)))
-    left = lefts(legs, going(best), fastest)
+    best = min(range(1, 31), key=lambda number: _width(lefts(legs, going(number))))
+    left = lefts(legs, going(best))
     return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (None, plain)
 
 
@@ -285,15 +351,18 @@ def _gains(flight: Flight, legs: Sequence[Leg]) -> list[Gain]:
     return found
 
 
-def lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> list[float]:
-    """Return by how much legs took longer than they are planned to, in their order."""
-    found, push = list[float](), STANDING
-    for leg in legs:
-        cruise = leg.cruise if isfinite(leg.cruise) and not timing.lag else fastest
-        rates = Rates(cruise, climb=cruise, descent=cruise, timing=timing)
-        here, there = (0.0, 0.0, 0.0), (*leg.way, 0.0)
-        found.append(leg.done - leg.begun - rates.from_stop_to_stop(here, there, push=push))
-        push = rates.push(here, there, push) or STANDING
+def lefts(flights: Sequence[Sequence[Leg]], timing: LegTiming) -> list[float]:
+    """Return by how much the legs of each flight took longer than they are planned to, in their order."""
+    found = list[float]()
+    fastest = max((leg.speeding_up.high for legs in flights for leg in legs), default=0.0)
+    for legs in flights:
+        push = STANDING
+        for leg in legs:
+            cruise = leg.cruise if isfinite(leg.cruise) and not timing.lag else fastest
+            rates = Rates(cruise, climb=cruise, descent=cruise, timing=timing)
+            here, there = (0.0, 0.0, 0.0), (*leg.way, 0.0)
+            found.append(leg.done - leg.begun - rates.from_stop_to_stop(here, there, push=push))
+            push = rates.push(here, there, push) or STANDING
     return found
 
 
@@ -305,45 +374,53 @@ def _width(values: Sequence[float]) -> float:
 _MakesFigure = Callable[[str, str, Iterable[float], str], Figure]
 
 
-def _vertical_figures(flight: Flight, level: _Levels, figure: _MakesFigure, jerk: float) -> Iterator[Figure]:
+def _vertical_figures(
+    flown: Sequence[tuple[Flight, _Levels]], figure: _MakesFigure, jerk: float
+) -> Iterator[Figure]:
     accelerations: list[float] = []
-    for name, sign in (("maxClimbRate", 1.0), ("maxDescentRate", -1.0)):
-        rates = [each.value for each in climbs_of(flight, level.chosen, sign)]
-        yield figure(name, "m/s", fastest(rates) if rates else (), "no upright leg was long enough for it")
-        ramps = vertical_ramps(flight, level.chosen, sign)
-        speeds = np.maximum(sign * flight.velocities[:, 2], 0.0)
-        accelerations += [with_jerk(flight.times, speeds, each, min(jerk, LARGEST_JERK)) for each in ramps]
     missing = "no upright leg was long enough for it"
+    for name, sign in (("maxClimbRate", 1.0), ("maxDescentRate", -1.0)):
+        rates = [each.value for flight, level in flown for each in climbs_of(flight, level.chosen, sign)]
+        yield figure(name, "m/s", fastest(rates), missing)
+        for flight, level in flown:
+            speeds = np.maximum(sign * flight.velocities[:, 2], 0.0)
+            ramps = vertical_ramps(flight, level.chosen, sign)
+            accelerations += [
+                with_jerk(flight.times, speeds, each, min(jerk, LARGEST_JERK)) for each in ramps
+            ]
     yield figure("maxVerticalAcceleration", "m/s²", accelerations, missing)
 
 
-def _turn_rate(flight: Flight) -> Figure:
-    rates = [degrees(each) for each in turns_of(flight)]
-    missing = "the heading never changed by 45°" if np.isfinite(flight.headings).any() else "no headings"
-    return _figure("maxTurnRate", "°/s", fastest(rates, 0.8) if rates else (), missing)
+def _turn_rate(flights: Sequence[Flight]) -> Figure:
+    rates = [degrees(each) for flight in flights for each in turns_of(flight)]
+    headed = any(np.isfinite(flight.headings).any() for flight in flights)
+    missing = "the heading never changed by 45°" if headed else "no headings"
+    return _figure("maxTurnRate", "°/s", fastest(rates, 0.8), missing)
 
 
-def _end_figures(flight: Flight) -> Iterator[Figure]:
+def _end_figures(flights: Sequence[Flight]) -> Iterator[Figure]:
     """Yield the figures of take-offs and landings, of a vehicle that flies."""
-    if flight.profile is None or not flight.profile.flies:
+    if flights[0].profile is None or not flights[0].profile.flies:
         return
-    landings = list(landings_of(flight))
+    spun_up = [each for flight in flights for each in spin_ups_of(flight)]
+    landings = [each for flight in flights for each in landings_of(flight)]
     none = "no landing until the motors stopped"
-    yield _figure("launchTime", "s", spin_ups_of(flight), "no command to take off")
+    yield _figure("launchTime", "s", spun_up, "no command to take off")
     yield _figure("landingRate", "m/s", (each.rate for each in landings), none)
     yield _figure("landingHeight", "m", (each.height for each in landings), none)
     yield _figure("recoveryTime", "s", (each.stopping for each in landings), none)
 
 
-def _energy_figures(flight: Flight, capacity: float | None) -> Iterator[Figure]:
-    yield _figure("meanPower", "W", _powers(flight), "no voltage and current while it moved")
-    lifetime, missing = _lifetime(flight, capacity)
-    yield _figure("lifetime", "s", lifetime, missing)
+def _energy_figures(flights: Sequence[Flight], capacity: float | None) -> Iterator[Figure]:
+    powers = [each for flight in flights for each in _powers(flight)]
+    yield _figure("meanPower", "W", powers, "no voltage and current while it moved")
+    found = [_lifetime(flight, capacity) for flight in flights]
+    yield _figure("lifetime", "s", (each for values, _ in found for each in values), found[0][1])
 
 
 def in_flight(flight: Flight, times: Floats) -> Flags:
     """Return at which times the vehicle was armed, between its first and its last motion."""
-    moving = np.flatnonzero(np.linalg.norm(flight.velocities, axis=1) > _still(flight.profile))
+    moving = np.flatnonzero(np.linalg.norm(flight.velocities, axis=1) > still(flight.profile))
     if not len(moving):
         return np.zeros(len(times), dtype=np.bool_)
     first, last = flight.times[moving[0]], flight.times[moving[-1]]

@@ -9,7 +9,7 @@ from math import hypot, nan, radians
 
 import numpy as np
 
-from .curves import Plateau, Ramp, extremes, plateaus_in, ramps_in, slopes_of, smoothed, steepest
+from .curves import FEWEST, Plateau, Ramp, extremes, plateaus_in, ramps_in, slopes_of, smoothed, steepest
 from .flight import Flags, Flight, Floats
 
 STRAIGHT = 0.98
@@ -17,6 +17,9 @@ STRAIGHT = 0.98
 
 LEAST_CORNER = radians(20.0)
 LEAST_TURN = radians(45.0)
+
+TURNING = 0.2
+"""Radians per second by which a course changes at least that turns."""
 
 EVEN_SECONDS = 2.0
 """Seconds for which a speed is kept at least that counts as even."""
@@ -92,7 +95,9 @@ def legs_of(flight: Flight, ramps: Sequence[Ramp], still: float) -> Iterator[Leg
         even = float(flight.times[after.first] - flight.times[before.last]) >= EVEN_SECONDS
         cruise = float(speeds[before.last : after.first + 1].mean()) if even else nan
         began = float(flight.times[before.first])
-        yield Leg(before, after, (east, north), cruise, *_bounds(flight, before.middle, began, stood))
+        yield Leg(
+            before, after, (east, north), cruise, *_bounds(flight, began, before.middle, after.middle, stood)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,18 +145,33 @@ def gain_of(flight: Flight, leg: Leg) -> Gain | None:
     return Gain(speed, seconds * lacks / speed, seconds)
 
 
-def _bounds(flight: Flight, moving: float, began: float, stood: float) -> tuple[float, float]:
-    """Return when a leg was commanded, and when it was done."""
+def _bounds(flight: Flight, began: float, moving: float, slowing: float, stood: float) -> tuple[float, float]:
+    """Return when a leg was commanded, and when it was done; places that it passes in line do not end it."""
     commanded = sorted((*flight.targets, *(since for since, _ in flight.modes)))
     given = [each for each in commanded if began - _LONGEST_PAUSE <= each <= moving]
-    following = [each for each in commanded if moving < each <= stood + _LONGEST_PAUSE]
+    following = [each for each in commanded if slowing < each <= stood + _LONGEST_PAUSE]
     return (given[-1] if given else nan), (following[0] if following else nan)
 
 
-def corners_passed(flight: Flight, chosen: Flags, slowest: float) -> Iterator[float]:
-    """Yield how near the vehicle came to the corners that it passed without a stop, metres.
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """A corner that was passed without a stop, which is where the straight lines before and after it meet.
 
-    A corner is where the straight lines before and after it meet.
+    Attributes:
+        nearest: metres to which the vehicle came.
+        turn: radians.
+        speed: slowest in the turn, metres per second.
+        beside: largest on each of its legs, of which the smaller one.
+    """
+
+    nearest: float
+    turn: float
+    speed: float
+    beside: float
+
+
+def corners_passed(flight: Flight, chosen: Flags, slowest: float) -> Iterator[Passage]:
+    """Yield the corners that the vehicle passed without a stop.
 
     Args:
         chosen: samples that count.
@@ -160,11 +180,28 @@ def corners_passed(flight: Flight, chosen: Flags, slowest: float) -> Iterator[fl
     for first, last in stretches(chosen & (level_speeds(flight) > slowest)):
         times, places = flight.times[first : last + 1], flight.places[first : last + 1, :2]
         velocities = flight.velocities[first : last + 1, :2]
+        speeds = np.hypot(*velocities.T)
         courses = np.unwrap(np.arctan2(velocities[:, 0], velocities[:, 1]))
-        for begin, end in _changes(times, courses, LEAST_CORNER):
+        turns = sorted(_turns(times, courses))
+        ends = [0, *(end for _, end in turns)], [*(begin for begin, _ in turns), len(times) - 1]
+        peaks = [float(speeds[one : two + 1].max()) for one, two in zip(*ends, strict=True)]
+        for (begin, end), legs in zip(turns, pairwise(peaks), strict=True):
             corner = _meeting(places[begin], velocities[begin], places[end], velocities[end])
             if corner is not None:
-                yield float(np.hypot(*(places[begin : end + 1] - corner).T).min())
+                nearest = float(np.hypot(*(places[begin : end + 1] - corner).T).min())
+                turn = abs(float(courses[end] - courses[begin]))
+                yield Passage(nearest, turn, float(speeds[begin : end + 1].min()), min(legs))
+
+
+def _turns(times: Floats, courses: Floats) -> Iterator[tuple[int, int]]:
+    """Yield where a course turns by a corner at least, all in one direction: begin and end of each turn."""
+    if len(times) < FEWEST:
+        return
+    rates = slopes_of(times, courses)
+    for turning in (rates > TURNING, rates < -TURNING):
+        for begin, end in stretches(turning):
+            if abs(courses[end] - courses[begin]) >= LEAST_CORNER:
+                yield begin, end
 
 
 def turns_of(flight: Flight) -> Iterator[float]:
@@ -226,11 +263,14 @@ class Landing:
         rate: of the final descent, metres per second.
         height: above the ground at which that begins, metres; NaN where the descent was even all along.
         stopping: seconds from standing on the ground until the motors have stopped.
+        drop, seconds: metres of all its descent, and how long it takes until the motors have stopped.
     """
 
     rate: float
     height: float
     stopping: float
+    drop: float
+    seconds: float
 
 
 def landings_of(flight: Flight) -> Iterator[Landing]:
@@ -251,7 +291,8 @@ def landings_of(flight: Flight) -> Iterator[Landing]:
             continue
         begin, rate = final
         height = float(heights[begin] - heights[-1]) if begin > 0 else float("nan")
-        yield Landing(rate, height, disarmed - float(times[-1]))
+        drop, seconds = float(heights[0] - heights[-1]), disarmed - float(times[0])
+        yield Landing(rate, height, disarmed - float(times[-1]), drop, seconds)
 
 
 def _final(times: Floats, descents: Floats) -> tuple[int, float] | None:

@@ -1,4 +1,4 @@
-"""``mmrs calibrate``: figures of a robot type from the log of one flight."""
+"""``mmrs calibrate``: figures of a robot type from the logs of flights."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mmrs_core.cli.output import say, say_json, table, tell
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from mmrs_mavlink.calibration.figures import Figure
     from mmrs_mavlink.calibration.flight import Flight
@@ -23,11 +23,11 @@ app = typer.Typer(rich_markup_mode=None, add_completion=False)
 @app.command()
 def calibrate(
     call: typer.Context,
-    log: Annotated[
-        Path,
+    logs: Annotated[
+        list[Path],
         typer.Argument(
-            metavar="LOG",
-            help="Log of one flight: ArduPilot's .bin, a ground station's .tlog, or a black box of MMRS.",
+            metavar="LOG...",
+            help="Logs of a vehicle: ArduPilot's .bin, a ground station's .tlog, or a black box of MMRS.",
         ),
     ],
     system: Annotated[
@@ -57,31 +57,39 @@ def calibrate(
     write: Annotated[bool, typer.Option("--write", help="Write the medians into the robot type.")] = False,
     json: Json = False,
 ) -> int:
-    """Calculate the figures of a robot type from a flight log.
+    """Calculate the figures of a robot type from flight logs.
 
     Prints acceleration, jerk, speeds, turn rate, settling time and power as the vehicle really flew them, for
     single targets (STEP) and missions (MISSION), each with its number of values, median and spread.
+    Values of several logs count together.
 
     Example: mmrs calibrate 00000042.BIN --robot-type field/robots/quad-650.xmi --write
     """
     if write and robot_type is None:
         raise typer.BadParameter("--write needs --robot-type, the file to write into")
-    from mmrs_mavlink.calibration.figures import figures_of
+    from mmrs_core.errors import UnsupportedError
+    from mmrs_mavlink.calibration.figures import figures_of, nothing
     from mmrs_mavlink.calibration.judging import judged
     from mmrs_mavlink.calibration.reading import flight_in
 
-    flight = flight_in(log, system)
-    for damage in flight.damages:
+    flights = [flight_in(log, system) for log in logs]
+    for damage in (damage for flight in flights for damage in flight.damages):
         tell(damage)
+    if any(flight.profile != flights[0].profile for flight in flights):
+        vehicles = ", ".join(f"{log}: {flight.vehicle}" for log, flight in zip(logs, flights, strict=True))
+        raise UnsupportedError(f"logs of different vehicles: {vehicles}")
     given = _type_in(call, robot_type, payload) if robot_type is not None else None
-    found = figures_of(flight, given.capacity if given is not None else None)
-    figures = judged(flight, found, lambda *figure: None if given is None else given.current(*figure))
+    current = nothing if given is None else given.current
+    found = figures_of(flights, given.capacity if given is not None else None, current)
+    figures = judged(flights, found, current)
     if given is not None and write:
         given.write(figures)
     if json:
-        say_json(_plain(log, flight, figures, given) | {"written": [robot_type] if write else []})
+        plain = [_plain(log, flight) for log, flight in zip(logs, flights, strict=True)]
+        told = {"logs": plain, "figures": [_plain_figure(each, given) for each in figures]}
+        say_json(told | {"written": [robot_type] if write else []})
         return 0
-    for line in _lines(flight, figures, given):
+    for line in _lines(flights, figures, given):
         say(line)
     if write:
         say(f"written: {robot_type}")
@@ -94,14 +102,13 @@ def _type_in(call: typer.Context, file: Path, payload: float) -> TypeFile:
     return type_in(file, settings_of(call).plugins().contributions.languages, payload)
 
 
-def _plain(log: Path, flight: Flight, figures: Iterable[Figure], given: TypeFile | None) -> dict[str, object]:
-    """Return the result as plain values."""
+def _plain(log: Path, flight: Flight) -> dict[str, object]:
+    """Return a log as plain values."""
     return {
         "log": log,
         "vehicle": flight.vehicle,
         "seconds": round(flight.seconds, 3),
         "rate": round(flight.rate, 3),
-        "figures": [_plain_figure(each, given) for each in figures],
         "damages": flight.damages,
     }
 
@@ -122,11 +129,12 @@ def _plain_figure(figure: Figure, given: TypeFile | None) -> dict[str, object]:
     return found | {"doubt": figure.doubt or None}
 
 
-def _lines(flight: Flight, figures: tuple[Figure, ...], given: TypeFile | None) -> Iterator[str]:
-    """Yield what is printed: the flight, the figures, those that are missing, and the attributes to copy."""
+def _lines(flights: Sequence[Flight], figures: tuple[Figure, ...], given: TypeFile | None) -> Iterator[str]:
+    """Yield what is printed: the flights, the figures, those that are missing, and the attributes to copy."""
     from mmrs_mavlink.calibration.attributes import element_lines
 
-    yield f"{flight.vehicle}: {flight.seconds:.0f} s, {flight.rate:.1f} positions a second"
+    for flight in flights:
+        yield f"{flight.vehicle}: {flight.seconds:.0f} s, {flight.rate:.1f} positions a second"
     yield ""
     known = [each for each in figures if not each.missing]
     head = ("flown as", "figure", "unit", "n", "median", "10 % … 90 %", *(() if given is None else ("type",)))
@@ -136,7 +144,7 @@ def _lines(flight: Flight, figures: tuple[Figure, ...], given: TypeFile | None) 
     yield from table(head, rows)
     yield ""
     for why, names in _by_cause(figures, lambda each: each.missing).items():
-        yield f"not in this log: {', '.join(names)}: {why}"
+        yield f"not in {'this log' if len(flights) == 1 else 'these logs'}: {', '.join(names)}: {why}"
     for why, names in _by_cause(figures, lambda each: each.doubt).items():
         yield f"not written: {', '.join(names)}: {why}"
     yield ""

@@ -11,7 +11,8 @@ from flown_curves import Curve, flown
 from mmrs_core.cli import run
 from mmrs_core.resources import shipped
 
-PLACES = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 0.0, 20.0)]
+AWAY = [(80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 0.0, 20.0)]
+PLACES = [(0.0, 0.0, 20.0), *AWAY, *AWAY, (80.0, 0.0, 20.0)]
 
 
 @pytest.fixture
@@ -24,8 +25,8 @@ def log(tmp_path):
 def test_figures_are_printed_with_number_and_spread_and_as_attributes(log, capsys):
     assert run(["calibrate", str(log)]) == 0
     printed = capsys.readouterr().out
-    assert "ArduCopter V4.7.0: 56 s" in printed
-    assert "  STEP      maxAcceleration  m/s²  4  2.5" in printed
+    assert "ArduCopter V4.7.0: 128 s" in printed
+    assert "  STEP      maxAcceleration  m/s²  9   2.5" in printed
     assert "not in this log: maxClimbRate, maxDescentRate, maxVerticalAcceleration: no upright leg" in printed
     assert '<legTimings flownAs="STEP" maxAcceleration="2.5' in printed
     assert '<movementCapabilities lifetime="2880"' in printed
@@ -34,9 +35,9 @@ def test_figures_are_printed_with_number_and_spread_and_as_attributes(log, capsy
 def test_json_holds_every_figure_or_why_not(log, capsys):
     assert run(["calibrate", str(log), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["vehicle"] == "ArduCopter V4.7.0"
+    assert [each["vehicle"] for each in found["logs"]] == ["ArduCopter V4.7.0"]
     figures = {(each["flown_as"], each["name"]): each for each in found["figures"]}
-    assert figures["STEP", "maxAcceleration"]["n"] == 4
+    assert figures["STEP", "maxAcceleration"]["n"] == 9
     assert figures["STEP", "maxAcceleration"]["low"] <= figures["STEP", "maxAcceleration"]["median"]
     assert figures["MISSION", "maxJerk"] == {
         "name": "maxJerk",
@@ -45,6 +46,22 @@ def test_json_holds_every_figure_or_why_not(log, capsys):
         "n": 0,
         "missing": "not flown in auto",
     }
+
+
+def test_several_logs_count_together(log, capsys):
+    assert run(["calibrate", str(log), str(log)]) == 0
+    printed = capsys.readouterr().out
+    assert printed.count("ArduCopter V4.7.0: 128 s") == 2
+    assert ["STEP", "maxAcceleration", "m/s²", "18"] in [line.split()[:4] for line in printed.splitlines()]
+
+
+def test_logs_of_different_vehicles_are_refused(log, tmp_path, capsys):
+    rover = tmp_path / "rover.BIN"
+    rover.write_bytes(dataflash(flown(PLACES, Curve()), firmware="ArduRover V4.7.0"))
+    assert run(["calibrate", str(log), str(rover)]) == 1
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert f"{rover}: ArduRover V4.7.0" in told.err
 
 
 def test_damage_is_reported_and_the_rest_is_used(log, capsys):
@@ -86,6 +103,15 @@ def test_figures_of_few_values_are_told_and_not_written(log, capsys):
     assert few.startswith("not written: ")
     assert "maxJerk" in few
     assert "<legTimings" not in printed
+
+
+def test_figures_of_fewer_than_two_legs_for_each_are_not_written(log, capsys):
+    log.write_bytes(dataflash(flown(PLACES[:-3], Curve())))
+    assert run(["calibrate", str(log)]) == 0
+    assert (
+        "maxAcceleration, maxDeceleration, maxJerk, settlingTime: fewer than 8 legs"
+        in capsys.readouterr().out
+    )
 
 
 def test_writing_needs_a_type(log, capsys):

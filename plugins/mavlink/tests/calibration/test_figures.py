@@ -8,20 +8,28 @@ import numpy as np
 import pytest
 from flight_logs import Sample, dataflash, telemetry
 from flown_curves import Curve, flown
+from flown_times.calibrated import log_of
+from flown_times.simulated import simulate_mission
+from real_flights.routes import COPTER as CRAFT
+from real_flights.routes import Route, on_px4, routes
 
-from mmrs_mavlink.calibration.figures import fastest, figures_of
+from mmrs_mavlink.calibration.figures import HOLDS, corner_radius, fastest, figures_of, nothing
+from mmrs_mavlink.calibration.judging import judged
+from mmrs_mavlink.calibration.motion import Passage
 from mmrs_mavlink.calibration.reading import flight_in
-from mmrs_mavlink.profiles import ARDUCOPTER, profile_for
+from mmrs_mavlink.profiles import ARDUCOPTER, PROFILES, profile_for
 
 OUT_AND_BACK = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 15.0, 20.0)]
 UP_AND_DOWN = [(0.0, 0.0, 10.0), (0.0, 0.0, 40.0), (0.0, 0.0, 10.0), (0.0, 0.0, 40.0)]
 COPTER = Curve()
 GUIDED, AUTO, LAND = 4, 3, 9
+PX4 = 12
+"""Number of the autopilot."""
 
 
 def figures(tmp_path, data):
     (tmp_path / "flight").write_bytes(data)
-    return {(each.flown_as, each.name): each for each in figures_of(flight_in(tmp_path / "flight"))}
+    return {(each.flown_as, each.name): each for each in figures_of([flight_in(tmp_path / "flight")])}
 
 
 @pytest.mark.parametrize("made", [dataflash, telemetry])
@@ -52,12 +60,54 @@ def test_a_mission_has_figures_of_its_own(tmp_path):
     assert found["MISSION", "cornerRadius"].missing == "no corner was passed without a stop"
 
 
+def test_the_values_of_several_flights_count_together(tmp_path):
+    flights = []
+    for rate in (10.0, 5.0):
+        (tmp_path / "flight").write_bytes(dataflash(flown(OUT_AND_BACK, COPTER, rate=rate)))
+        flights.append(flight_in(tmp_path / "flight"))
+    single = zip(*map(figures_of, [[each] for each in flights]), strict=True)
+    for both, (one, two) in zip(figures_of(flights), single, strict=True):
+        assert both.flown_as != "STEP" or len(both.values) == len(one.values) + len(two.values), both.name
+
+
+@pytest.mark.parametrize(
+    ("stated", "holds"),
+    [({}, True), ({"maxAcceleration": 2.4, "maxDeceleration": 1.4}, True), ({"maxAcceleration": 1.5}, False)],
+)
+def test_what_flights_do_not_contradict_holds(stated, holds, tmp_path):
+    """An ArduCopter speeds up by 2.5 m/s², and slows down by 1.5 m/s² leg by leg where its type is silent."""
+    flights = []
+    for more in (0.9, 1.0, 1.1):
+        (tmp_path / "flight").write_bytes(
+            dataflash(flown(OUT_AND_BACK, replace(COPTER, acceleration=2.5 * more, deceleration=1.5 * more)))
+        )
+        flights.append(flight_in(tmp_path / "flight"))
+
+    def current(name, flown_as):
+        return stated.get(name) if flown_as == "STEP" else None
+
+    figures = {each.name: each for each in figures_of(flights, current=current) if each.flown_as == "STEP"}
+    assert (figures["maxAcceleration"].doubt == HOLDS) is holds
+    assert figures["maxDeceleration"].doubt == figures["maxAcceleration"].doubt
+
+
+def test_a_place_in_line_does_not_end_a_leg(tmp_path):
+    plain = list(flown(OUT_AND_BACK, COPTER))
+    passing = [
+        replace(each, item=2 * each.item + (each.item == 1 and each.place[0] > 40.0)) for each in plain
+    ]
+    found = [figures(tmp_path, dataflash(each))["STEP", "settlingTime"] for each in (plain, passing)]
+    assert found[0] == found[1]
+
+
 def test_the_lag_of_an_autopilot_is_not_settling(tmp_path):
     (tmp_path / "flight").write_bytes(dataflash(flown(OUT_AND_BACK, COPTER)))
     flight = flight_in(tmp_path / "flight")
-    diving = figures_of(replace(flight, profile=profile_for("sub")))
+    diving = figures_of([replace(flight, profile=profile_for("sub"))])
     settled = [
-        each.median for each in (*figures_of(flight), *diving) if each.name == "settlingTime" and each.values
+        each.median
+        for each in (*figures_of([flight]), *diving)
+        if each.name == "settlingTime" and each.values
     ]
     assert settled[1] < settled[0] - 2.0
 
@@ -94,6 +144,26 @@ def test_a_corner_that_is_passed_tells_its_radius(tmp_path):
     assert found["MISSION", "cornerRadius"].median == pytest.approx(nearest, abs=0.2)
 
 
+@pytest.mark.parametrize(
+    ("profile", "speed", "radius"),
+    [("arducopter", 1.73, 0.8), ("px4-multicopter", 1.73, 2.0), ("px4-multicopter", 4.9, None)],
+)
+def test_the_radius_of_a_px4_is_the_tangent_of_the_circle_for_which_it_slows_down(profile, speed, radius):
+    """It goes round a right angle with half of 3 m/s², so by 1.73 m/s where it is 2 m."""
+    corner = Passage(nearest=0.8, turn=np.pi / 2.0, speed=speed, beside=5.0)
+    found = corner_radius(corner, PROFILES[profile].pacing.mission)
+    assert found == (radius if radius is None else pytest.approx(radius, rel=0.01))
+
+
+def test_the_corners_of_a_simulated_px4_tell_its_radius(tmp_path):
+    places = tuple((30.0 * number, 40.0 + 30.0 * (number % 2), 12.0) for number in range(6))
+    on_px4(routes(Route("Alba", CRAFT, places, 8.0, fluid=True)))(tmp_path / "zigzag")
+    simulate_mission(tmp_path / "zigzag", "Alba")
+    radius = figures(tmp_path, log_of(tmp_path / "zigzag", "Alba", PX4))["MISSION", "cornerRadius"]
+    assert len(radius.values) >= 3
+    assert radius.median == pytest.approx(PROFILES["px4-multicopter"].pacing.mission.corner_radius, rel=0.1)
+
+
 def _round_a_corner(radius, speed, rate=10.0):
     """Yield a mission that goes east, turns north by an arc without a stop, and goes on."""
     length, arc = 40.0, radius * np.pi / 2.0
@@ -128,6 +198,26 @@ def test_a_landing_tells_its_end(tmp_path):
     assert found["", "recoveryTime"].median == pytest.approx(3.0, abs=0.4)
 
 
+@pytest.mark.parametrize(("rate", "height", "written"), [(0.2, 6.0, True), (0.48, 10.5, False)])
+def test_figures_of_landings_are_written_that_tell_how_long_these_take(rate, height, written, tmp_path):
+    """Its autopilot lands from 10 m on at 0.5 m/s, and so it is planned, with a stop before."""
+    down = np.concatenate(
+        [np.arange(30.0, height, -0.15), np.arange(height, 0.0, -rate / 10.0), np.zeros(40)]
+    )
+    heights = np.concatenate([np.concatenate([np.arange(0.0, 30.0, 0.1), down])] * 3)
+    rates, number = np.gradient(heights, 0.1), len(heights) // 3
+    samples = [
+        Sample(n / 10.0, (0.0, 0.0, up), (0.0, 0.0, rate), mode=LAND, armed=n % number < number - 5)
+        for n, (up, rate) in enumerate(zip(heights.tolist(), rates.tolist(), strict=True))
+    ]
+    (tmp_path / "flight").write_bytes(dataflash(samples))
+    flights = [flight_in(tmp_path / "flight")]
+    found = {each.name: each for each in judged(flights, figures_of(flights), nothing)}
+    assert len(found["landingRate"].values) == 3
+    assert (found["landingRate"].doubt == "") is written
+    assert written or found["landingRate"].doubt.startswith("with them, landings would be planned further")
+
+
 def test_power_tells_how_long_the_battery_lasts(tmp_path):
     found = figures(tmp_path, dataflash(flown(OUT_AND_BACK, COPTER), watts=444.0))
     assert found["", "meanPower"].median == pytest.approx(444.0, rel=1e-5)
@@ -142,7 +232,7 @@ def test_a_log_of_a_battery_that_was_charged_in_between_does_not_tell_how_long_i
     flight = flight_in(tmp_path / "flight")
     times = np.linspace(flight.times[0] + 5.0, flight.times[-1] - 5.0, len(charges))
     charged = replace(flight, charges=np.column_stack([times, charges]))
-    found = next(each for each in figures_of(charged) if each.name == "lifetime")
+    found = next(each for each in figures_of([charged]) if each.name == "lifetime")
     assert bool(found.values) is lasts
     assert found.missing.startswith("it was charged") is not lasts
 
