@@ -5,7 +5,7 @@ Stages print nothing, read no clock and no environment; only `write` and `save` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
-    from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
+    from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.generation.capabilities.judging import TargetCapability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
@@ -331,29 +331,6 @@ def simulate(
         conditions=conditions_for(program, contributions, assume or {}, asks=False),
         terms=Terms(observe=observe),
     )
-
-
-def inputs_of(
-    program: Program,
-    place: BehaviourContext,
-    contributions: Contributions,
-    *,
-    options: Mapping[str, str] | None = None,
-    robots: Collection[str] | None = None,
-) -> dict[str, VehicleInput]:
-    """Return what the backends of a run may use, by robot.
-
-    Args:
-        options: of the backend.
-        robots: those that this process runs; None: all of the program's.
-
-    Raises:
-        UnsupportedError: if the type of a robot is not given.
-    """
-    from mmrs_core.simulation.run import inputs_of as found_inputs
-
-    found = found_inputs(input_of(program, place, contributions), options or {})
-    return {id: each for id, each in found.items() if robots is None or id in robots}
 
 
 def conditions_for(

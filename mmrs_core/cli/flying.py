@@ -28,8 +28,9 @@ from mmrs_core.cli.session import Session
 from mmrs_core.contributions.execution import Clock
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.pictures.figures import clock
-from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
+from mmrs_core.pipeline import backend_for, conditions_for, input_of
 from mmrs_core.simulation.live import live_run_for, run_live
+from mmrs_core.simulation.run import inputs_of
 from mmrs_runtime.bus.carriers.carrier import Carrier
 from mmrs_runtime.bus.program_bus import begin_all, slots_path
 from mmrs_runtime.control import Control, Status, Taken
@@ -111,9 +112,9 @@ def carry_out(session: Session, loaded: Loaded, wanted: RunOptions) -> Result:
         writer = stack.enter_context(LogWriter(wanted.folder, resumed=wanted.resume))
         observers = ObserverThread(session.observers)
         recorder = StepRecorder(observers, writer, program)
-        inputs = inputs_of(program, loaded.place, session.contributions, options=options, robots=here)
+        inputs = inputs_of(input_of(program, loaded.place, session.contributions), options)
         live_run = replace(
-            live_run_for(program, inputs, backend, bus, conditions),
+            live_run_for(program, {id: inputs[id] for id in here}, backend, bus, conditions),
             clock=clock,
             orders=orders,
             run=run,

@@ -18,9 +18,9 @@ from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.pipeline import BehaviourContext, inputs_of
+from mmrs_core.pipeline import BehaviourContext, input_of
 from mmrs_core.simulation.live import live_run_for
-from mmrs_core.simulation.run import asked_by
+from mmrs_core.simulation.run import asked_by, inputs_of
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.decisions import standard_conditions
@@ -35,14 +35,10 @@ def interpreted(
     behaviour: Program, berth: VehicleProcesses, contributions: Contributions, folder: Path, **options: str
 ) -> LiveRun:
     """Return a dive by the interpreter that keeps its logs in `logs`."""
+    given = input_of(behaviour, BehaviourContext({diver().name: diver()}), contributions)
     live_run = live_run_for(
         behaviour,
-        inputs_of(
-            behaviour,
-            BehaviourContext({diver().name: diver()}, (), {}),
-            contributions,
-            options={"clock": "bus", **options},
-        ),
+        inputs_of(given, {"clock": "bus", **options}),
         contributions.vehicles["can"],
         LocalSlots(behaviour.executable),
         standard_conditions(asked_by(behaviour)),

@@ -11,7 +11,7 @@ from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROO
 from mmrs_core.languages.json_form.tree import formatted, laid_out
 from mmrs_core.languages.json_form.unknown import stated
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
-from mmrs_core.languages.references.addresses import Addresses, Positions
+from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.references.by_name import ReferenceNames
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.values.texts import described
@@ -19,10 +19,6 @@ from mmrs_core.languages.values.texts import described
 _Children = tuple[Feature, tuple[object, ...]]
 _Piece = str | tuple[Element, Feature | None, int]
 """What is still to be written: text, or an element with how deep it stands."""
-
-
-class _UnplacedError(Exception):
-    """More than its position has to be known to refer to an element."""
 
 
 class JsonWriter:
@@ -42,10 +38,6 @@ class JsonWriter:
         self._prefixes: dict[str, str] = {}
         self._pieces: list[str] = []
         self._kinds: dict[Metaclass, str] = {}
-        sources = {root._mmrs_source for root in roots}
-        home = sources.pop() if len(sources) == 1 else None
-        placed = () if sources or (home is not None and home.ids) else roots
-        self._places = Positions(placed, home, _UnplacedError)
 
     def document(self, schema_location: Mapping[str, str]) -> str:
         """Return the whole text.
@@ -176,10 +168,6 @@ class JsonWriter:
         return self._address(element, target, feature) if name is None else name
 
     def _address(self, element: Element, target: Element, feature: Feature) -> str:
-        try:
-            return self._places[target]
-        except _UnplacedError:
-            pass
         if self._addresses.stands_here(target):
             return self._addresses.fragment(target)
         try:
