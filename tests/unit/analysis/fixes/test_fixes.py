@@ -8,15 +8,13 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.analysis.fixes import FIXES
-from mmrs_core.analysis.fixes.repair import Repairer, with_edits
+from mmrs_core.analysis.fixes.repair import with_edits
 from mmrs_core.analysis.fixes.spelling import meant
-from mmrs_core.cli.diagnosing import Subject
-from mmrs_core.cli.session import Session
-from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.fixes import Edit, Fix, with_value
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
-DAM, PARK, CLOCK = EXAMPLES / "mixed-team", EXAMPLES / "carbon-dioxide", EXAMPLES / "handwritten"
+DAM, PARK = EXAMPLES / "mixed-team", EXAMPLES / "carbon-dioxide"
+CLOCK = EXAMPLES / "handwritten"
 VERTEX = '    <shell xsi:type="mission:GeoCoordinate" latitude="42.539040" longitude="13.394370"/>\n'
 WAY = '  <taskDependencies from="//@tasks.0" to="//@tasks.1"/>\n'
 
@@ -91,19 +89,11 @@ ADDED |= dict.fromkeys(("CTX018", "CTX019", "CTX027"), ("  <environment ", f"{CO
 ELSEWHERE = {"MML072": "shells of tasks are mended as those of areas", "XMI014": "see below"}
 
 
-@pytest.fixture(scope="module")
-def session():
-    return Session(Settings())
-
-
-def subject_of(session, folder):
-    return Subject(session, folder / "behaviour.xmi" if folder == CLOCK else folder)
-
-
 def texts(name):
-    """Return the folder, the file, and its text as it ought to be and as it is."""
+    """Return the project, the file, and its text as it ought to be and as it is."""
     folder, relative, right, wrong = SPOILT[name]
     file = (folder / relative).resolve()
+    folder = folder / "behaviour.xmi" if folder == CLOCK else folder
     sound = file.read_text(encoding="utf-8")
     if name in ADDED:
         sound = sound.replace(*ADDED[name], 1)
@@ -117,84 +107,66 @@ def texts(name):
     return folder, file, sound, sound.replace(right, wrong, 2 if "root" in name else 1)
 
 
-def repair_of(session, folder, unsaved, fixes=None):
-    subject = subject_of(session, folder)
-    contributions = session.contributions
-    checks = [check.name for check in contributions.checks]
-
-    def diagnose(more):
-        return subject.diagnose({**unsaved, **more})
-
-    chosen = contributions.fixes if fixes is None else {fix.code: fix for fix in fixes}
-    repairer = Repairer(chosen, contributions.languages, checks, diagnose)
-    return repairer, diagnose({})
-
-
-def mended(session, folder, unsaved, fixes=None):
-    repairer, now = repair_of(session, folder, unsaved, fixes)
-    return repairer.repair(now, unsaved)
-
-
 @pytest.mark.parametrize("name", sorted(SPOILT))
-def test_a_spoilt_text_is_mended_to_what_it_was(session, name):
+def test_a_spoilt_text_is_mended_to_what_it_was(mended, name):
     folder, file, sound, spoilt = texts(name)
-    repair = mended(session, folder, {file: spoilt.encode()})
+    repair = mended(folder, {file: spoilt.encode()})
     assert name[:6].strip() in {each.fault.code for each in repair.applied}
     assert repair.texts[file].decode() == sound
     assert not repair.refused
 
 
-def test_a_name_with_another_number_is_not_taken_for_misspelt(session):
+def test_a_name_with_another_number_is_not_taken_for_misspelt(mended):
     file = (DAM / "mission.xmi").resolve()
     text = file.read_text(encoding="utf-8").replace('name="crest is free"', 'name="fork 1"')
     spoilt = text.replace('to="//@tasks.1"', 'to="fork 2"', 1)
-    assert not mended(session, DAM, {file: spoilt.encode()}).applied
+    assert not mended(DAM, {file: spoilt.encode()}).applied
 
 
 def test_every_fix_of_the_core_is_tried():
     assert {fix.code for fix in FIXES} == {name.split()[0] for name in SPOILT} | set(ELSEWHERE)
 
 
-def test_a_prefix_is_declared_that_only_one_metamodel_has(session):
+def test_a_prefix_is_declared_that_only_one_metamodel_has(mended):
     file = (DAM / "mission.xmi").resolve()
     spoilt = file.read_text(encoding="utf-8").replace(' xmlns:survey="urn:mmrs:survey:1.0"', "")
-    repair = mended(session, DAM, {file: spoilt.encode()})
+    repair = mended(DAM, {file: spoilt.encode()})
     assert b'xmlns:survey="urn:mmrs:survey:1.0"' in repair.texts[file]
     assert repair.diagnosis.complete
     assert [each for each in repair.diagnosis.wrong if each.code == "XMI014"] == []
 
 
-def test_a_fix_that_brings_another_error_is_refused(session):
+def test_a_fix_that_brings_another_error_is_refused(mended):
     folder, file, _, spoilt = texts("MML005")
 
     def worse(wrong):
         yield with_value(wrong.tag.attribute("reserve"), "nothing")
 
-    repair = mended(session, folder, {file: spoilt.encode()}, [Fix("MML005", "spoil it", worse)])
+    repair = mended(folder, {file: spoilt.encode()}, [Fix("MML005", "spoil it", worse)])
     assert repair.applied == ()
     assert [each.fault.code for each in repair.refused] == ["MML005"]
     assert repair.texts[file].decode() == spoilt
 
 
-def test_a_fix_that_makes_the_text_unreadable_is_refused(session):
+def test_a_fix_that_makes_the_text_unreadable_is_refused(mended):
     folder, file, _, spoilt = texts("MML005")
     torn = [Fix("MML005", "tear it", lambda wrong: [Edit(0, len(wrong.markup.data) // 2, "")])]
-    assert mended(session, folder, {file: spoilt.encode()}, torn).applied == ()
+    assert mended(folder, {file: spoilt.encode()}, torn).applied == ()
 
 
-def test_one_bad_fix_does_not_keep_others_from_being_applied(session):
+def test_one_bad_fix_does_not_keep_others_from_being_applied(mended):
     folder, file, _, spoilt = texts("MML005")
     twice = spoilt.replace('travelMode="SAFE"', 'travelMode="safe"').encode()
     torn = Fix("MML005", "tear it", lambda wrong: [Edit(0, len(wrong.markup.data) // 2, "")])
     fixes = [torn, next(fix for fix in FIXES if fix.code == "XMI005")]
-    repair = mended(session, folder, {file: twice}, fixes)
+    repair = mended(folder, {file: twice}, fixes)
     assert [each.fault.code for each in repair.applied] == ["XMI005"]
 
 
-def test_vertices_stay_where_references_count_them(session):
+def test_vertices_stay_where_references_count_them(mended):
     folder, file, _, spoilt = texts("CTX006")
     referring = spoilt.replace("<!-- stands in the lake -->", "<!-- //@shell.1 -->")
-    repair = mended(session, folder, {file: referring.encode()})
+    repair = mended(folder, {file: referring.encode()})
     assert "CTX006" not in {each.fault.code for each in repair.applied}
 
 
@@ -221,40 +193,40 @@ def placed(relative, pattern, replacement, count=0):
 
 
 @pytest.mark.parametrize("relative", ["mission.xmi", "context.xmi"])
-def test_two_files_that_disagree_are_both_named_and_neither_is_changed(session, relative):
+def test_two_files_that_disagree_are_both_named_and_neither_is_changed(mended, relative):
     file, spoilt = placed(relative, PLACE, EXCHANGED)
-    repair = mended(session, PARK, {file: spoilt.encode()})
+    repair = mended(PARK, {file: spoilt.encode()})
     assert [each.code for each in repair.diagnosis.wrong] == ["CTX008", "MML028"]
     assert {Path(each.place.file).name for each in repair.diagnosis.wrong} == {"context.xmi", "mission.xmi"}
     assert repair.applied == repair.refused == ()
 
 
 @pytest.mark.parametrize("relative", ["mission.xmi", "context.xmi"])
-def test_two_files_that_disagree_are_named_where_exchanged_figures_are_near(session, relative):
+def test_two_files_that_disagree_are_named_where_exchanged_figures_are_near(mended, relative):
     texts = {}
     for each in ("mission.xmi", "context.xmi"):
         # 13.74 north and 13.35 east: exchanged, some 60 km off
         file, text = placed(each, r'latitude="42\.(\d+)"', r'latitude="13.7\1"')
         texts[file] = (re.sub(PLACE, EXCHANGED, text) if each == relative else text).encode()
-    repair = mended(session, PARK, texts)
+    repair = mended(PARK, texts)
     assert [each.code for each in repair.diagnosis.wrong[:2]] == ["CTX008", "MML028"]
     assert "latitude and longitude may be exchanged" in repair.diagnosis.wrong[0].hint
     assert repair.applied == repair.refused == ()
 
 
-def test_the_homes_are_mended_where_tasks_and_context_agree(session):
+def test_the_homes_are_mended_where_tasks_and_context_agree(mended):
     file, spoilt = placed("mission.xmi", f"<home(.*){PLACE}", r'<home\1latitude="\3" longitude="\2"')
-    repair = mended(session, PARK, {file: spoilt.encode()})
+    repair = mended(PARK, {file: spoilt.encode()})
     assert [each.fault.code for each in repair.applied] == ["MML027"] * 3
     assert repair.texts[file] == file.read_bytes()
     assert repair.diagnosis.wrong == ()
 
 
-def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(session):
+def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(mended):
     file, spoilt = placed(
         "mission.xmi", '"42.370000" longitude="13.350097"', '"-42.37" longitude="-13.350097"'
     )
-    repair = mended(session, PARK, {file: spoilt.encode()})
+    repair = mended(PARK, {file: spoilt.encode()})
     assert [(each.code, each.place.path) for each in repair.diagnosis.wrong] == [
         ("MML028", "/team/robots[1]")
     ]
@@ -262,11 +234,11 @@ def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(session):
     assert repair.applied == repair.refused == ()
 
 
-def test_a_fix_that_hides_another_fault_is_refused(session):
+def test_a_fix_that_hides_another_fault_is_refused(mended):
     # in its right place, the second home would link the third, which is 101 km away, with the rest
     file, spoilt = placed("mission.xmi", '"42.370000" longitude="13.350097"', '"13.395" longitude="42.37"')
     spoilt = spoilt.replace('longitude="13.350194"', 'longitude="14.58"')
-    repair = mended(session, PARK, {file: spoilt.encode()})
+    repair = mended(PARK, {file: spoilt.encode()})
     assert [(each.code, each.place.path) for each in repair.diagnosis.wrong] == [
         ("MML027", "/team/robots[1]"),
         ("MML028", "/team/robots[2]"),
@@ -276,23 +248,23 @@ def test_a_fix_that_hides_another_fault_is_refused(session):
     assert [each.objection for each in repair.refused] == [objection]
 
 
-def test_faults_of_other_elements_go_with_the_value_that_they_stem_from(session):
+def test_faults_of_other_elements_go_with_the_value_that_they_stem_from(examined):
     file = (DAM / "mission.xmi").resolve()
     text = re.sub(f"(<home.*){PLACE}", r'\1latitude="\3" longitude="\2"', file.read_text("utf-8"))
-    repairer, now = repair_of(session, DAM, {file: text.encode()})
+    repairer, now = examined(DAM, {file: text.encode()})
     assert "/tasks[8]" in {each.place.path for each in now.wrong}  # it is placed relative to a home
     assert repairer.repair(now, {file: text.encode()}).texts[file] == file.read_bytes()
 
 
-def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(session):
+def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(examined):
     file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="-13.350097"')
-    _repairer, now = repair_of(session, PARK, {file: spoilt.encode()})
+    _repairer, now = examined(PARK, {file: spoilt.encode()})
     assert [(each.code, each.place.path) for each in now.wrong] == [("MML030", "/team/robots[1]")]
 
 
-def test_places_far_apart_are_sound_where_the_mission_says_so(session):
+def test_places_far_apart_are_sound_where_the_mission_says_so(examined):
     file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="17.350097"')
     said = spoilt.replace('reserve="0.25"', 'largestGap="400000" reserve="0.25"')
     for text, codes in ((spoilt, ["MML028"]), (said, [])):
-        _, now = repair_of(session, PARK, {file: text.encode()})
+        _, now = examined(PARK, {file: text.encode()})
         assert [each.code for each in now.wrong] == codes

@@ -8,10 +8,6 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.analysis.fixes import FIXES
-from mmrs_core.analysis.fixes.repair import Repairer
-from mmrs_core.cli.diagnosing import Subject
-from mmrs_core.cli.session import Session
-from mmrs_core.cli.settings import Settings
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import to_json
 
@@ -93,11 +89,6 @@ ELSEWHERE = {"MML072": "shells of tasks are mended as those of areas", "XMI014":
 
 
 @pytest.fixture(scope="module")
-def session():
-    return Session(Settings())
-
-
-@pytest.fixture(scope="module")
 def projects(session, tmp_path_factory):
     """Return the folder of the examples in JSON."""
     place = tmp_path_factory.mktemp("examples")
@@ -129,26 +120,14 @@ def texts(name, projects):
         right = right[: right.index("9.0") + 3]
         wrong = right.replace("4.0", "_").replace("9.0", "4.0").replace("_", "9.0")
     assert right in sound
-    return folder, file, sound, sound.replace(right, wrong, 1)
-
-
-def repair_of(session, projects, folder, unsaved):
-    place = projects / folder.name
-    subject = Subject(session, place / BEHAVIOUR if folder == CLOCK else place)
-    contributions = session.contributions
-    checks = [check.name for check in contributions.checks]
-
-    def diagnose(more):
-        return subject.diagnose({**unsaved, **more})
-
-    repairer = Repairer(contributions.fixes, contributions.languages, checks, diagnose)
-    return repairer.repair(diagnose({}), unsaved)
+    project = file if folder == CLOCK else projects / folder.name
+    return project, file, sound, sound.replace(right, wrong, 1)
 
 
 @pytest.mark.parametrize("name", sorted(SPOILT))
-def test_a_spoilt_json_text_is_mended_to_what_it_was(session, projects, name):
+def test_a_spoilt_json_text_is_mended_to_what_it_was(mended, projects, name):
     folder, file, sound, spoilt = texts(name, projects)
-    repair = repair_of(session, projects, folder, {file: spoilt.encode()})
+    repair = mended(folder, {file: spoilt.encode()})
     assert name.split()[0] in {each.fault.code for each in repair.applied}
     if name == "XMI003":
         assert json.loads(repair.texts[file]) == json.loads(sound)
@@ -161,16 +140,16 @@ def test_every_fix_of_the_core_is_tried_on_json():
     assert {fix.code for fix in FIXES} == {name.split()[0] for name in SPOILT} | set(ELSEWHERE)
 
 
-def test_what_was_mended_is_not_mended_again(session, projects):
+def test_what_was_mended_is_not_mended_again(mended, projects):
     folder, file, _, spoilt = texts("XMI004", projects)
-    once = repair_of(session, projects, folder, {file: spoilt.encode()})
-    again = repair_of(session, projects, folder, once.texts)
+    once = mended(folder, {file: spoilt.encode()})
+    again = mended(folder, once.texts)
     assert again.applied == ()
     assert again.texts == once.texts
 
 
 @pytest.mark.parametrize("declared", [True, False])
-def test_a_prefix_is_declared_among_the_languages(session, projects, declared):
+def test_a_prefix_is_declared_among_the_languages(mended, projects, declared):
     file = (projects / DAM.name / MISSION).resolve()
     sound = file.read_text(encoding="utf-8")
     lacking = sound.replace(', "survey": "urn:mmrs:survey:1.0"', "")
@@ -178,15 +157,15 @@ def test_a_prefix_is_declared_among_the_languages(session, projects, declared):
     if not declared:
         whole = '  "$languages": {"mission": "urn:mmrs:mission:1.0"},\n'
         lacking = lacking.replace(whole, "").replace('"mission:', '"urn:mmrs:mission:1.0#')
-    repair = repair_of(session, projects, DAM, {file: lacking.encode()})
+    repair = mended(projects / DAM.name, {file: lacking.encode()})
     assert json.loads(repair.texts[file])["$languages"]["survey"] == "urn:mmrs:survey:1.0"
     assert repair.diagnosis.complete
     assert repair.diagnosis.faults == ()
 
 
-def test_only_what_is_wrong_changes_in_an_unusual_layout(session, projects):
+def test_only_what_is_wrong_changes_in_an_unusual_layout(mended, projects):
     file = (projects / DAM.name / MISSION).resolve()
     tight = json.dumps(json.loads(file.read_text(encoding="utf-8")), separators=(",", ":"))
     spoilt = "\ufeff" + tight.replace("photoDistance", "photoDistanse") + "\r\n"
-    repair = repair_of(session, projects, DAM, {file: spoilt.encode()})
+    repair = mended(projects / DAM.name, {file: spoilt.encode()})
     assert repair.texts[file].decode() == spoilt.replace("photoDistanse", "photoDistance")
