@@ -419,14 +419,11 @@ class Travel:
 
     def _by(self, passage: CorridorPath, start: Position, goal: Position, level: float | None) -> Route | str:
         """Return the route through one corridor."""
-        there = self._routed(start, passage.points[0], level)
-        on = self._routed(passage.points[-1], goal, level)
-        for part in (there, on):
-            if isinstance(part, str):
-                return f"{part} (corridor '{passage.corridor}')"
-        assert isinstance(there, Route)
-        assert isinstance(on, Route)
-        points = (*there.points, *passage.points, *on.points)
+        there = self._path(start, passage.points[0], level)
+        on = self._path(passage.points[-1], goal, level)
+        if isinstance(there, str) or isinstance(on, str):
+            return f"{there if isinstance(there, str) else on} (corridor '{passage.corridor}')"
+        points = (*there, *passage.points, *on)
         return self._timed(tuple(each for i, each in enumerate(points) if i == 0 or each != points[i - 1]))
 
     def _launch_heights(self, other: float) -> list[float]:
@@ -449,12 +446,17 @@ class Travel:
 
     def _routed(self, start: Position, goal: Position, level: float | None = None) -> Route | str:
         """Return the route at a level where that is clear, else the quickest; or why there is none."""
+        points = self._path(start, goal, level)
+        return points if isinstance(points, str) else self._timed(points)
+
+    def _path(self, start: Position, goal: Position, level: float | None) -> tuple[Position, ...] | str:
+        """Return the places of that route."""
         try:
             if level is not None and self._altitude is not None and start[:2] != goal[:2]:
                 raised = self._raised(start, goal, level)
                 if raised is not None:
-                    return self._timed(raised)
-            return self._timed(self.space.route(start, goal))
+                    return raised
+            return self.space.route(start, goal)
         except UnreachableError as error:
             return str(error)
 
