@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from math import degrees
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.walk import successors
@@ -16,7 +16,7 @@ from mmrs_core.scene.headings import bearing, turn_at
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram, Transition
     from mmrs_core.scene import Kinematics, Name, Position
-    from mmrs_core.scene.timing import Push
+    from mmrs_core.scene.timing import Passage, Push
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 SHORTEST = 3
@@ -24,18 +24,6 @@ SHORTEST = 3
 
 STRAIGHT_DEGREES = 10.0
 """Up to where a turn is none, so that a vehicle that keeps to its legs passes it without a stop."""
-
-
-class Passage(NamedTuple):
-    """The end of a move that is passed.
-
-    Attributes:
-        saved: seconds by which this move is shorter: the robot begins the next one, and does not settle.
-        onward: seconds by which the next one is: the robot has begun it, and does not set out from a stop.
-    """
-
-    saved: float
-    onward: float
 
 
 class Passages:
@@ -124,8 +112,14 @@ class Passages:
             before = rates.push(*leg, before)
         return before
 
-    def ahead(self, move: Move, path: tuple[Position, ...]) -> Passage | None:
-        """Return what a robot saves that need not stop at the end of a move; None: it stops there."""
+    def ahead(self, move: Move, path: tuple[Position, ...], before: Passage | None = None) -> Passage | None:
+        """Return what a robot saves that need not stop at the end of a move; None: it stops there.
+
+        Args:
+            move: of the robot.
+            path: of the move.
+            before: with which it has begun the move; None: from a stop.
+        """
         index = self._index[move.id]
         transition = self._robot.transitions.get(index)
         if transition is None or not transition.fluid or len(path) < 2 or index in self._held:
@@ -139,10 +133,8 @@ class Passages:
         if not flowing and degrees(turn_at(path[-2], path[-1], beyond[1])) > STRAIGHT_DEGREES:
             return None
         rates = self.kinematics(move).rates(move.speed)
-        arriving = (path[-2], path[-1])
-        settling, both = rates.settling(*arriving), rates.overlap(arriving, (beyond[0], beyond[1])) / 2.0
-        starting = min(rates.timing.starting, settling)
-        return Passage(settling - starting + both, both + starting)
+        entering = before.speed if before is not None and len(path) == 2 else 0.0
+        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entering)
 
 
 def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:

@@ -13,7 +13,7 @@ from mmrs_core.contributions.rules import most_specific, robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Position, RobotType
-from mmrs_core.scene.timing import STANDING, MoveSeconds, Push
+from mmrs_core.scene.timing import STANDING, MoveSeconds, Passage, Push
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,8 @@ def kinematics_of(robot: RobotProgram, input: TargetInput) -> Kinematics | None:
 
 def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
-    here, onward = robot.home, 0.0
+    here = robot.home
+    passed: Passage | None = None
     facing: float | None = None
     push: Push | None = STANDING
     local = input.program.frame.is_local
@@ -73,9 +74,9 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
         path = kind.path(move, here, robot.home) if kind is not None and here is not None else None
         seconds = None
         if kind is not None and path is not None and passages is not None:
-            ahead = passages.ahead(move, path)
-            saved = onward + (ahead.saved if ahead is not None else 0.0)
-            onward = ahead.onward if ahead is not None else 0.0
+            ahead = passages.ahead(move, path, passed)
+            saved = sum((passed.onward if passed else 0.0, ahead.saved if ahead else 0.0))
+            passed = ahead
             limits = replace(passages.kinematics(move), facing=facing, push=push)
             duration = kind.seconds(move, path, limits, robot.travel_mode)
             facing = passages.facing(move, path, facing) if ahead is None else None

@@ -1,21 +1,22 @@
 """How long legs take: the one model that planning, checks, simulation, reports and targets share.
 
 Autopilots take a straight leg from a stop to a stop: they speed up, keep their speed, and slow down, with a
-limited acceleration that itself changes no faster than the jerk: an S-curve, the double-S profile of
-Biagiotti and Melchiorri (2008, section 3.4), with a deceleration of its own. What is left until they report
-it as done is settling. Where they pass a corner, they begin the next leg while they still brake on the last
-one, as far as the corner's radius allows.
+limited acceleration that itself changes no faster than the jerk (`mmrs_runtime.s_curves`). What is left until
+they report it as done is settling. Where they pass a corner, they begin the next leg while they still brake
+on the last one, as far as the corner's radius allows, or slow down for it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
-from mmrs_runtime.timing import IDEAL, LegTiming, half_turn, reaching
+from mmrs_runtime.s_curves import Curve, covering, curve, largest_speed, reached, speeding, stop_to_stop
+from mmrs_runtime.timing import IDEAL, LegTiming, half_turn
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -42,6 +43,9 @@ ARC = 0.5
 Leg: TypeAlias = tuple[Position, Position]
 """Where a straight leg begins and ends."""
 
+_Way: TypeAlias = tuple[Sequence[float], Sequence[float]]
+"""The same, in space or in the plane."""
+
 
 Push: TypeAlias = tuple[float, float]
 """East and north: how much of the thrust against the drag of its hull at cruise a robot has built up. It is
@@ -49,6 +53,20 @@ left when the robot stops, which lags less on a leg in that direction, and more 
 
 STANDING: Push = (0.0, 0.0)
 """The push of a robot that has not moved yet."""
+
+
+class Passage(NamedTuple):
+    """The end of a leg that is passed.
+
+    Attributes:
+        saved: seconds by which this leg is shorter: the robot begins the next one, and does not settle.
+        onward: seconds by which the next one is: the robot has begun it, and does not set out from a stop.
+        speed: metres per second with which it begins the next one.
+    """
+
+    saved: float
+    onward: float
+    speed: float = 0.0
 
 
 class MoveSeconds(NamedTuple):
@@ -127,7 +145,7 @@ class Rates:
     def __post_init__(self) -> None:
         """Keep what all level legs share: planning asks for the seconds of very many."""
         up, down, jerk = self.timing.acceleration, self.timing.braking, self.timing.jerk
-        phases = _speeding(self.cruise, up, jerk) + _speeding(self.cruise, down, jerk)
+        phases = speeding(self.cruise, up, jerk) + speeding(self.cruise, down, jerk)
         object.__setattr__(self, "_both_ends", phases / 2.0 + self.timing.settled(self.cruise))
         object.__setattr__(self, "_reaching", self.cruise * phases / 2.0)
         limited = max(up, down) < inf
@@ -241,15 +259,43 @@ class Rates:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""
         return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
 
+    def passage(self, before: Leg, after: Leg, entering: float = 0.0) -> Passage:
+        """Return what a robot saves that passes where one leg ends and another begins.
+
+        Args:
+            before, after: the legs.
+            entering: metres per second with which it begins the one before.
+        """
+        if self.timing.slows_down:
+            return self._slowed(before, after, entering)
+        settling, both = self.settling(*before), self.overlap(before, after) / 2.0
+        starting = min(self.timing.starting, settling)
+        return Passage(settling - starting + both, both + starting)
+
+    def _slowed(self, before: Leg, after: Leg, entering: float) -> Passage:
+        """Return what a robot saves that slows down for a place, as long as it need not stop for it."""
+        (here, there), (_, beyond) = before, after
+        aside = _half_turn((here[:2], there[:2]), (there[:2], beyond[:2]))
+        if aside is None:
+            return Passage(0.0, 0.0)
+        speed = self.timing.passing(aside, dist(there[:2], beyond[:2]), beyond[2] - there[2])
+        first = self._curve(before, entering, min(speed, self._curve(after).fastest))
+        early = min(first.seconds, self.timing.early(first.leaves))
+        onward = self._curve(after).seconds - self._curve(after, first.leaves).seconds
+        saved = self._curve(before, entering).seconds - first.seconds + self.settling(*before)
+        return Passage(self.share * (saved + early), self.share * (onward - early), first.leaves)
+
+    def _curve(self, leg: Leg, enters: float = 0.0, leaves: float = 0.0) -> Curve:
+        length, speed, up, down = self._limits(*leg)
+        return curve(length, speed, (up, down, self.timing.jerk), min(enters, speed), min(leaves, speed))
+
     def overlap(self, before: Leg, after: Leg) -> float:
         """Return how many seconds a robot saves that passes the corner between two legs.
 
         That is for as long as it is on both at once: while it brakes on the first and speeds up on the
         second, but it comes no further from the corner than its radius, and half of the turn is over when it
-        is as far before as behind it. One that slows down for the corner saves what it need not brake.
+        is as far before as behind it.
         """
-        if self.timing.slows_down:
-            return self.share * self._kept_up(before, after)
         both = min(self._phases(*before)[1], self._phases(*after)[0])
         return self.share * min(both, self._turning(before, after))
 
@@ -275,7 +321,7 @@ class Rates:
         end = self._early(start, end)
         seconds, _ = self._stopping(start, end)
         more = max(0.0, entering - self.cruise)
-        saved = more * _speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
+        saved = more * speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
         eased = max(
             SPEEDING * self.even(start, end), self.share * (seconds - sum(self._phases(start, end)) / 2.0)
         )
@@ -302,15 +348,15 @@ class Rates:
         if length <= 0.0 or speed <= 0.0:
             return self._stopping(start, end)[0]
         if self.bound > 0:
-            seconds, fastest = _stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
+            seconds, fastest = stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
             settled = self.timing.settled(fastest, seconds)
             return seconds + self._lag(seconds, start, end) + max(0.0, settled)
         still = min(timing.still, speed)
         if speed <= timing.still:
             length -= min(length, timing.acceptance)
-        ends = [reaching(still, limit, timing.jerk) for limit in (up, down)]
+        ends = [reached(still, limit, timing.jerk) for limit in (up, down)]
         whole = length + sum(metres for _, metres in ends)
-        seconds, _ = _stop_to_stop(whole, speed, up, down, timing.jerk)
+        seconds, _ = stop_to_stop(whole, speed, up, down, timing.jerk)
         return max(0.0, seconds - sum(each for each, _ in ends))
 
     def _straight(self, start: Position, end: Position, push: Push | None = None) -> float:
@@ -335,8 +381,8 @@ class Rates:
         if not self.timing.lag or start[:2] == end[:2]:
             return 0.0
         along = -float(self.bound) if push is None else _along(start, end, push)
-        lacks = max(0.0, 1.0 - self._drag(start, end) * along)
-        return lacks * self.timing.lag * (1.0 - exp(-seconds / self.timing.lag_within))
+        lacks = self.timing.lacks(self._drag(start, end), along)
+        return lacks * self.timing.lag_at(self.cruise) * (1.0 - exp(-seconds / self.timing.lag_within))
 
     def _drag(self, start: Position, end: Position) -> float:
         """Return the largest drag on a leg as a share of that at cruise; it grows as the speed squared."""
@@ -365,7 +411,7 @@ class Rates:
             return (0.0, 0.0)
         if speed <= 0.0:
             return (inf, 0.0)
-        return _stop_to_stop(length, speed, up, down, self.timing.jerk)
+        return stop_to_stop(length, speed, up, down, self.timing.jerk)
 
     def _phases(self, start: Position, end: Position) -> tuple[float, float]:
         """Return for how many seconds a leg from a stop to a stop speeds up, and slows down."""
@@ -373,15 +419,8 @@ class Rates:
         if length <= 0.0 or speed <= 0.0:
             return (0.0, 0.0)
         jerk = self.timing.jerk
-        fastest = min(speed, _largest_speed(length, up, down, jerk))
-        return (_speeding(fastest, up, jerk), _speeding(fastest, down, jerk))
-
-    def _kept_up(self, before: Leg, after: Leg) -> float:
-        """Return the seconds that a robot saves that slows down for a corner, rather than stops there."""
-        aside = _half_turn(before, after)
-        if aside is None:
-            return 0.0
-        return self.timing.corner(aside, self._stopping(*before)[1], self._stopping(*after)[1]).saved
+        fastest = min(speed, largest_speed(length, up, down, jerk))
+        return (speeding(fastest, up, jerk), speeding(fastest, down, jerk))
 
     def _turning(self, before: Leg, after: Leg) -> float:
         """Return the seconds of a turn that comes as far from its corner as the radius at most.
@@ -394,7 +433,7 @@ class Rates:
         if half <= STRAIGHT or self.timing.corner_radius == inf:
             return inf
         apart = self.timing.corner_radius / (2.0 * half)
-        return 2.0 * _covering(apart, self.timing.acceleration, self.timing.jerk)
+        return 2.0 * covering(apart, self.timing.acceleration, self.timing.jerk)
 
     def _limits(self, start: Position, end: Position) -> tuple[float, float, float, float]:
         """Return the length of a leg, and its largest speed, acceleration and deceleration along it."""
@@ -409,7 +448,7 @@ class Rates:
         return length, length / even if even > 0.0 else inf, up, down
 
 
-def _half_turn(before: Leg, after: Leg) -> float | None:
+def _half_turn(before: _Way, after: _Way) -> float | None:
     """Return the sine of half the turn between two legs; None where one has no length."""
     one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
     return half_turn(one, two)
@@ -427,62 +466,3 @@ def _rounded(away: float, aside: float, radius: float) -> float:
     ahead, beside = away * cos(aside), away * sin(aside) - radius
     straight = sqrt(max(0.0, ahead * ahead + beside * beside - radius * radius))
     return radius * ((atan2(beside, ahead) + atan2(radius, straight)) % (2.0 * pi)) + straight
-
-
-def _speeding(speed: float, acceleration: float, jerk: float) -> float:
-    """Return the seconds from a stop to a speed, which takes half that speed times them, in metres."""
-    if jerk == inf:
-        return speed / acceleration
-    if speed * jerk >= acceleration * acceleration:
-        return speed / acceleration + acceleration / jerk
-    return 2.0 * sqrt(speed / jerk)
-
-
-def _covering(metres: float, acceleration: float, jerk: float) -> float:
-    """Return the seconds in which a robot that speeds up from a stop without end has gone so far."""
-    bend = acceleration / jerk if jerk < inf else 0.0
-    if metres <= jerk * bend**3 / 6.0 if bend else acceleration == inf:
-        return float((6.0 * metres / jerk) ** (1.0 / 3.0)) if jerk < inf else 0.0
-    speed, left = acceleration * bend / 2.0, metres - acceleration * bend * bend / 6.0
-    return bend + (sqrt(speed * speed + 2.0 * acceleration * left) - speed) / acceleration
-
-
-def _stop_to_stop(
-    length: float, speed: float, acceleration: float, deceleration: float, jerk: float
-) -> tuple[float, float]:
-    """Return the seconds of a leg from a stop to a stop, and its largest speed."""
-    if speed < inf:
-        phases = _speeding(speed, acceleration, jerk) + _speeding(speed, deceleration, jerk)
-        if 2.0 * length >= speed * phases:
-            return length / speed + phases / 2.0, speed
-    fastest = _largest_speed(length, acceleration, deceleration, jerk)
-    if fastest == inf:
-        return 0.0, inf
-    return _speeding(fastest, acceleration, jerk) + _speeding(fastest, deceleration, jerk), fastest
-
-
-def _largest_speed(length: float, acceleration: float, deceleration: float, jerk: float) -> float:
-    """Return the speed that a leg reaches where nothing limits it but acceleration and jerk.
-
-    Its phases take as many seconds as twice the length by that speed. A phase that does not reach its
-    acceleration takes 2 √(v / jerk), another v / a + a / jerk: of the four cases the sum of these leads to
-    a power or to a quadratic equation, of v or of √v.
-    """
-    more, less = (
-        (acceleration, deceleration) if acceleration >= deceleration else (deceleration, acceleration)
-    )
-    if jerk == inf:
-        return sqrt(2.0 * length / (1.0 / more + 1.0 / less)) if less < inf else inf
-    if more < inf:
-        both, linear = 1.0 / more + 1.0 / less, (more + less) / jerk
-        speed = (sqrt(linear * linear + 8.0 * both * length) - linear) / (2.0 * both)
-        if speed * jerk >= more * more:
-            return speed
-    if less < inf:
-        scale, root = sqrt(less), sqrt(2.0 * length)
-        # (v / a + a / j) + 2 √(v / j) = (√(v / a) + √(a / j))², so that √v (√(v / a) + √(a / j)) = √(2 l)
-        linear = sqrt(less / jerk)
-        root_of_speed = (sqrt(linear * linear + 4.0 * root / scale) - linear) * scale / 2.0
-        if root_of_speed * root_of_speed * jerk >= less * less:
-            return root_of_speed * root_of_speed
-    return float((length * sqrt(jerk) / 2.0) ** (2.0 / 3.0))

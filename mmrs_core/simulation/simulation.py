@@ -27,7 +27,7 @@ from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import DISTANCE, Position
 from mmrs_core.scene.headings import bearing
-from mmrs_core.scene.timing import STANDING, Push
+from mmrs_core.scene.timing import STANDING, Passage, Push
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of, move_kinds_of
@@ -84,7 +84,7 @@ class SimulatedRobot(Vehicle):
         self.notes: list[str] = []
         self._wind, self._current = wind(given.environment), current(given.environment)
         self._grounded, self._stopped, self._halted = True, False, False
-        self._rolling = 0.0
+        self._passed: Passage | None = None
         self._facing: float | None = None
         self._push: Push | None = STANDING
         self._bears = False
@@ -237,15 +237,14 @@ class SimulatedRobot(Vehicle):
         kinematics = replace(self._passages.kinematics(move), facing=self._facing, push=self._push)
         rates = kinematics.rates(move.speed)
         turning = rates.turning(path[0], path[1], self._facing) if len(path) > 1 else 0.0
-        ahead = self._passages.ahead(move, path) if through else None
+        ahead = self._passages.ahead(move, path, self._passed) if through else None
         seconds = kind.seconds(move, path, kinematics, self._robot.travel_mode).expected
-        seconds -= turning + self._rolling
-        self._rolling = 0.0
+        seconds -= turning + (self._passed.onward if self._passed is not None else 0.0)
         self._facing = self._passages.facing(move, path, self._facing) if ahead is None else None
         self._push = self._passages.push(move, path, self._push)
         if ahead is not None:
             seconds -= ahead.saved
-            self._rolling = ahead.onward
+        self._passed = ahead
         found = stretches(path, rates, max(0.0, seconds), kinematics, flow=self._flow())
         if not found:
             self._fault = Fault("WIND", "too strong to make headway")
@@ -278,7 +277,7 @@ class SimulatedRobot(Vehicle):
         here = self._legs[-1].finish
         rate = cost(here, here, seconds, self._kinematics, self._flow())
         self._append((Stretch(here, here, seconds, rate),), now)
-        self._rolling = 0.0
+        self._passed = None
         self._hold_against_wind(seconds)
 
     def _arrive(self, move: Move) -> None:

@@ -8,21 +8,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, hypot, inf, log, sqrt
-from typing import NamedTuple
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
 
 RESTING = 0.3
 """Metres from its set-point within which a robot that trails it is as slow as one that stands still."""
-
-
-class Corner(NamedTuple):
-    """How a corner is passed: the speed, seconds for which it keeps it, and those that it saves so."""
-
-    speed: float
-    keeps: float
-    saved: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +30,8 @@ class LegTiming:
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
         turning: share of its acceleration with which it goes round a corner that it passes, for which it
             slows down; 0: it begins the next leg before the end of the last one.
-        cornering: seconds for which it keeps the speed of a corner by which it turns right round (`corner`).
+        level_within: metres by which the next place may be higher or lower where it passes one so; otherwise
+            it comes to a stop, but does not settle.
         acceptance: metres from a target at which it may count as reached: so short a leg may take no time,
             and another one may be so much longer that begins there; so much shorter, too, without `still`.
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
@@ -47,6 +39,7 @@ class LegTiming:
         starting: seconds of the settling that pass as it sets out from a stop.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
             after some time, as it builds up the thrust for it; and the time constant of that, seconds.
+        lag_grows: power of the commanded speed, in metres per second, by which that is more.
         stall: seconds for which it may stand at a target before it counts as reached, at most, unless it goes
             on in the direction of its last leg.
         stall_within: metres of a leg with which that becomes less, by e.
@@ -81,13 +74,14 @@ class LegTiming:
     descent: float = inf
     corner_radius: float = inf
     turning: float = 0.0
-    cornering: float = 0.0
+    level_within: float = inf
     acceptance: float = 0.0
     still: float = 0.0
     settling: float = 0.0
     starting: float = 0.0
     lag: float = 0.0
     lag_within: float = 1.0
+    lag_grows: float = 0.0
     stall: float = 0.0
     stall_within: float = inf
     keeps_acceleration: bool = True
@@ -142,25 +136,47 @@ class LegTiming:
         """Return whether it slows down for corners that it passes."""
         return self.turning > 0.0 and self.corner_radius > 0.0
 
-    def corner(self, aside: float, before: float, after: float) -> Corner:
-        """Return how it passes a corner that it slows down for.
+    def lag_at(self, speed: float) -> float:
+        """Return the lag at a commanded speed, metres per second."""
+        return float(self.lag * speed**self.lag_grows)
 
-        It takes a circle that touches both legs as far from the corner as its radius, no faster than it
-        gets on either leg from a stop, and turns for no longer than a stop would take.
+    def lacks(self, drag: float, along: float) -> float:
+        """Return the share of the thrust against its drag that a robot lacks as it begins a leg.
+
+        Where it slows down for corners, it has kept what is along the leg; others have lost some at stops.
 
         Args:
-            aside: sine of half the turn.
-            before, after: largest speeds of the legs, metres per second.
+            drag: largest on the leg, as a share of that at cruise.
+            along: what it has of that thrust, as a share of the same, along the leg.
         """
+        has = max(-1.0, along / drag) if self.slows_down and drag > 0.0 else drag * along
+        return max(0.0, 1.0 - has)
+
+    def passing(self, aside: float, onward: float, rise: float) -> float:
+        """Return at most how fast it passes a place that it slows down for, metres per second.
+
+        It takes a circle that touches both legs as far from there as its radius, and is no faster than it
+        may be to stop at the end of the next leg (``computeStartXYSpeedFromWaypoints``).
+
+        Args:
+            aside: sine of half the turn, in the plane.
+            onward: length of the next leg, in the plane, metres. rise: height that it gains, metres.
+        """
+        if onward < self.corner_radius or abs(rise) >= self.level_within:
+            return 0.0
         ahead = sqrt(max(0.0, 1.0 - aside * aside))
         circle = self.turning * self.acceleration * self.corner_radius * ahead
-        speed = min(before, after, sqrt(circle / aside) if aside > 0.0 else inf)
-        saved = 0.0
-        for fastest, limit in ((before, self.braking), (after, self.acceleration)):
-            seconds, metres = reaching(speed, limit, self.jerk)
-            saved += seconds - metres / fastest if fastest > 0.0 else 0.0
-        keeps = min(self.cornering * aside**1.5, saved + max(0.0, self.settling))
-        return Corner(speed, keeps, saved - keeps)
+        return min(self.stopping(onward), sqrt(circle / aside) if aside > 0.0 else inf)
+
+    def stopping(self, metres: float) -> float:
+        """Return how fast it may be so far from where it stops, metres (``computeMaxSpeedFromDistance``)."""
+        bend = 2.0 * self.braking**2 / self.jerk
+        return sqrt(bend * bend + 2.0 * self.braking * metres) - bend
+
+    def early(self, speed: float) -> float:
+        """Return how many seconds before it is there it has passed a place, at a speed: within its radius."""
+        before = max(speed, self.stopping(self.corner_radius))
+        return 2.0 * self.corner_radius / (before + speed) if speed > 0.0 else 0.0
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.
@@ -168,18 +184,6 @@ class LegTiming:
         At a steady acceleration that is v² / 2a, and never more than the radius.
         """
         return min(self.corner_radius, speed * speed / (2.0 * min(self.acceleration, self.braking)))
-
-
-def reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, float]:
-    """Return the seconds and metres in which a robot that speeds up from a stop first is so fast."""
-    if acceleration == inf:
-        return 0.0, 0.0
-    bend = acceleration / jerk if jerk < inf else 0.0
-    if bend > 0.0 and 2.0 * speed <= acceleration * bend:
-        seconds = sqrt(2.0 * speed / jerk)
-        return seconds, speed * seconds / 3.0
-    seconds = speed / acceleration + bend / 2.0
-    return seconds, speed * speed / (2.0 * acceleration) + acceleration * bend * bend / 24.0
 
 
 def half_turn(before: Sequence[float], after: Sequence[float]) -> float | None:

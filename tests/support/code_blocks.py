@@ -96,7 +96,7 @@ class Reader:
         code = int(expected[1]) if expected else 0
         commands = commands_of(block)
         for number, (command, told) in enumerate(commands):
-            if command.startswith("cd "):
+            if command.startswith("cd ") and "&&" not in command:
                 self.folder /= command.removeprefix("cd ")
                 continue
             done = subprocess.run(

@@ -305,6 +305,8 @@ class Observer:
         elif kind == "MISSION_CURRENT":
             complete = message.mission_state == mavlink.MISSION_STATE_COMPLETE
             self._item = message.total + 1 if complete else message.seq
+        elif kind == "MISSION_ITEM_REACHED":  # MISSION_CURRENT may come a second later
+            self._item = message.seq + 1 if message.seq == self._item else self._item
         elif kind in ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK"):
             self.photos.add(message.img_idx if kind == "CAMERA_FEEDBACK" else message.image_index)
         elif kind == "STATUSTEXT":

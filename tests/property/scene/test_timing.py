@@ -1,6 +1,7 @@
 """Laws of the model of legs, for all lengths, speeds, accelerations and jerks."""
 
 from dataclasses import replace
+from itertools import pairwise
 from math import cos, hypot, inf, pi, radians, sin, tan
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from mmrs_core.scene import Kinematics
 from mmrs_core.scene.headings import bearing
 from mmrs_core.scene.timing import Rates
+from mmrs_runtime.s_curves import curve
 from mmrs_runtime.timing import IDEAL, LegTiming
 
 HERE = (0.0, 0.0, 10.0)
@@ -27,6 +29,8 @@ def timings(draw):
         deceleration=draw(st.none() | LIMITS),
         jerk=draw(st.just(inf) | LIMITS),
         corner_radius=draw(st.floats(0.0, 20.0)),
+        turning=draw(st.just(0.0) | st.floats(0.1, 1.0)),
+        level_within=draw(st.just(inf) | st.floats(0.1, 2.0)),
         settling=draw(st.floats(0.0, 5.0)),
         overshoot=draw(st.floats(0.0, 0.3)),
         spread=draw(st.floats(0.0, 0.5)),
@@ -122,9 +126,45 @@ def test_passing_a_corner_takes_no_more_time_than_stopping_there(timing, first, 
     end = (corner[0] + second * sin(radians(90.0 - turn)), corner[1] + second * sin(radians(turn)), corner[2])
     found = rates(timing, speed)
     stopping = found.from_stop_to_stop(HERE, corner) + found.from_stop_to_stop(corner, end)
-    saved = found.settling(HERE, corner) + found.overlap((HERE, corner), (corner, end))
-    assert 0.0 <= saved <= stopping + 1e-9
+    passage = found.passage((HERE, corner), (corner, end))
+    saved = passage.saved + passage.onward
+    assert -1e-9 <= saved <= stopping + 1e-9
     assert stopping - saved >= found.eased(HERE, corner) / 2.0 - 1e-6
+
+
+@given(timings(), st.lists(st.tuples(LENGTHS, st.floats(-179.0, 179.0)), min_size=2, max_size=6), SPEEDS)
+def test_a_robot_that_slows_down_for_places_takes_each_leg_at_speeds_that_fit(timing, ways, speed):
+    """None is quicker than at even speed to where it counts as passed, and none is entered faster."""
+    assume(timing.slows_down)
+    found, here, course, legs = rates(timing, speed), HERE, 0.0, []
+    for length, aside in ways:
+        course += radians(aside)
+        there = (here[0] + length * cos(course), here[1] + length * sin(course), here[2])
+        legs.append((here, there))
+        here = there
+    entering = onward = 0.0
+    for before, after in pairwise(legs):
+        passage = found.passage(before, after, entering)
+        level = hypot(before[1][0] - before[0][0], before[1][1] - before[0][1])
+        seconds = found.from_stop_to_stop(*before) - onward - passage.saved
+        assert seconds >= max(0.0, level - timing.corner_radius) / speed - 1e-6
+        assert 0.0 <= passage.speed <= speed
+        entering, onward = passage.speed, passage.onward
+
+
+@given(LIMITS, LIMITS, LIMITS | st.just(inf), LENGTHS, SPEEDS, SPEEDS, SPEEDS)
+def test_a_leg_between_two_speeds_is_no_shorter_than_the_way_that_it_takes(
+    up, down, jerk, length, speed, enters, leaves
+):
+    enters, leaves = min(enters, speed), min(leaves, speed)
+    found = curve(length, speed, (up, down, jerk), enters, leaves)
+    whole = curve(length, speed, (up, down, jerk))
+    assert length / speed - 1e-9 <= found.seconds <= whole.seconds + 1e-6
+    assert found.leaves <= leaves
+    assert max(enters, found.leaves) <= found.fastest <= speed + 1e-9
+    assert whole.seconds == pytest.approx(
+        rates(LegTiming(up, down, jerk=jerk), speed).from_stop_to_stop(HERE, east(length)), rel=1e-6
+    )
 
 
 @given(timings(), st.floats(5.0, 500.0), SPEEDS)

@@ -374,16 +374,20 @@ STRIPS = tuple(
 )
 """Turns by a right angle at the ends of strips, and places between, that are passed."""
 
+HOPS = tuple((0.0, 10.0 * index, 12.0) for index in range(1, 21))
+"""Places so near each other that none is passed at the commanded speed."""
+
+STAIRS = tuple((0.0, 15.0 * index, 12.0 + 3.0 * min(index, 10 - index)) for index in range(1, 11))
+
 STRIPES = tuple(
-    Flight(
-        f"copter: {name}",
-        routes(Route("Alba", COPTER, (*STRIPS, (0.0, 0.0, 12.0)), speed, fluid=True)),
-        way=way,
-    )
-    for name, speed, way in (
-        ("strips", 5.0, RUN),
-        ("strips in AUTO", 5.0, PLAN),
-        ("quick strips in AUTO", 9.0, PLAN),
+    Flight(f"copter: {name}", routes(Route("Alba", COPTER, places, speed, fluid=True)), way=way)
+    for name, places, speed, way in (
+        ("strips", (*STRIPS, (0.0, 0.0, 12.0)), 5.0, RUN),
+        ("strips in AUTO", (*STRIPS, (0.0, 0.0, 12.0)), 5.0, PLAN),
+        ("quick strips in AUTO", (*STRIPS, (0.0, 0.0, 12.0)), 9.0, PLAN),
+        ("hops", HOPS, 9.0, RUN),
+        ("hops in AUTO", HOPS, 9.0, PLAN),
+        ("stairs in AUTO", STAIRS, 5.0, PLAN),
     )
 )
 
@@ -399,6 +403,7 @@ PX4S = (
             *("hold, then resume", "order return", "order stop", "order land"),
             *("link cut for 40 s", "process killed"),
             *("ten minutes", "ten minutes in AUTO", "strips", "strips in AUTO", "quick strips in AUTO"),
+            *("hops", "hops in AUTO", "stairs in AUTO"),
         )
     ),
     _as_px4(_COPTERS["photos in passing"], parameters={"TRIG_MODE": 4.0}),

@@ -206,11 +206,12 @@ PX4_COPTER = AutopilotTiming(
         descent=1.5,
         corner_radius=2.0,
         turning=0.5,
-        cornering=2.35,
+        level_within=0.8,
         acceptance=2.0,
-        settling=0.95,
-        lag=3.2,
-        lag_within=15.0,
+        settling=0.2,
+        lag=1.95,
+        lag_within=9.7,
+        lag_grows=0.32,
         spread=0.4,
         reporting=5.0,
     ),
@@ -252,14 +253,16 @@ it moves.
 It makes no more than 9.8 m/s there. A first leg begins 1.8 s late, since OFFBOARD wants set-points before
 (guiding).
 
-On missions an item is over once it has been within its radius for a second. Against its drag it comes near to
-its speed only after some time, and its path waits for it (``PositionSmoothing.cpp``, ``_getMaxXYSpeed`` and
-MPC_XY_ERR_MAX): legs of 12 m at 5 m/s took 5.0 to 8.1 s, of 25 to 30 m 10.0 to 12.1 s, and of 100 m 24.2 to
-27.1 s. The last leg of a mission was reported as done up to 3.6 s late, and a take-off 5 s late where the
-vehicle refused to be armed at first.
+On missions an item at which it stops is over once it has been within its radius for a second. Against its
+drag it comes near to its speed only after some time, and its path waits for it (``PositionSmoothing.cpp``,
+``_getMaxXYSpeed`` and MPC_XY_ERR_MAX): legs of 12 m at 5 m/s took 5.5 to 6.9 s, of 30 m 10.0 to 12.1 s, and
+of 100 m 25.6 to 25.9 s. The last leg of a mission was reported as done up to 3.6 s late, and a take-off 5 s
+late where the vehicle refused to be armed at first.
 
 A place that it passes it passes no faster than on a circle of MPC_XY_TRAJ_P · MPC_ACC_HOR, 1.5 m/s² to the
-side, that touches both legs within its radius (``TrajectoryConstraints.hpp``), and it keeps that speed until
-it goes along the next leg: legs of 30 m at 5 m/s between turns by 45°, 90° and 135° took 8.0, 9.5 and 10.5 s
-in the mean, 5.2 s at 9 m/s between turns by 20°, and 9.4 s by 135°.
+side, that touches both legs within its radius, and no faster than it may be to stop at the next one
+(``TrajectoryConstraints.hpp``); one that is higher or lower by NAV_MC_ALT_RAD it comes to a stop for. Legs of
+30 m at 5 m/s between turns by 45°, 90° and 135° took 8.1, 9.5 and 10.4 s in the mean, 5.2 s at 9 m/s between
+turns by 20°, and 9.5 s by 135°; in one direction, legs of 5 m at 5 m/s took 1.8 s, of 10 and 15 m at 9 m/s
+2.2 and 2.4 s, and of 15 m with 3 m up or down at 5 m/s 5.3 s. Settling and lag are fitted to 46 flights.
 """

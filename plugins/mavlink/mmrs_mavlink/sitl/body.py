@@ -11,7 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
-from mmrs_runtime.timing import Corner, LegTiming, half_turn, reaching
+from mmrs_runtime.s_curves import curve, speeding
+from mmrs_runtime.timing import LegTiming, half_turn
 
 Vector = tuple[float, float, float]
 
@@ -38,14 +39,15 @@ STILL: Vector = (0.0, 0.0, 0.0)
 
 @dataclass(slots=True)
 class CurvedLeg:
-    """A straight leg, as a part of one from a stop to a stop.
+    """A straight leg as an S-curve.
 
     Attributes:
-        path: from its start to its end, metres. length: of the whole one.
-        before, after: what is left out at its ends, which it passes at a speed: seconds and metres.
-        corner: how it passes its end; None: it stops there.
+        path: from its start to its end, metres. length: of it.
+        speed: largest. acceleration, jerk: at most.
         elapsed: seconds since its start; less than 0: it begins later.
-        duration: seconds until its end. ramp: seconds to its full speed.
+        enters, leaves: metres per second at its ends.
+        passes: whether it takes the next one at once.
+        duration: seconds until its end. ramp: seconds in which it slows down.
         lacks: share of the thrust against the drag of its hull that it lacks at its start.
     """
 
@@ -55,35 +57,30 @@ class CurvedLeg:
     acceleration: float
     jerk: float
     elapsed: float = 0.0
+    enters: float = 0.0
+    leaves: float = 0.0
+    passes: bool = False
     duration: float = 0.0
     ramp: float = 0.0
     lacks: float = 0.0
-    before: tuple[float, float] = (0.0, 0.0)
-    after: tuple[float, float] = (0.0, 0.0)
-    corner: Corner | None = None
 
     def __post_init__(self) -> None:
-        if self.length < self.speed * self._ramp_to(self.speed):
-            self.speed = _bisected(0.0, self.speed, lambda speed: speed * self._ramp_to(speed) < self.length)
-        self.ramp = self._ramp_to(self.speed)
-        self.duration = self.length / self.speed + self.ramp
-
-    def _ramp_to(self, speed: float) -> float:
-        """Return the seconds from a stop to a speed."""
-        steady, bent = speed / self.acceleration, self.acceleration / self.jerk
-        return steady + bent if steady >= bent else 2.0 * sqrt(speed / self.jerk)
+        limits = (self.acceleration, self.acceleration, self.jerk)
+        self.duration, self.speed, self.leaves = curve(
+            self.length, self.speed, limits, self.enters, self.leaves
+        )
+        self.ramp = speeding(self.speed - self.leaves, self.acceleration, self.jerk)
 
     @property
     def left(self) -> float:
         """Return the seconds that are left."""
-        return max(0.0, self.duration - self.after[0] - self.elapsed)
+        return max(0.0, self.duration - self.elapsed)
 
     @property
     def now(self) -> tuple[float, float]:
         """Return the share of its path that is behind it, and of which it makes so much more per second."""
-        distance, speed = self.at(max(self.before[0], self.elapsed))
-        length = self.length - self.before[1] - self.after[1]
-        return (distance - self.before[1]) / length, speed / length
+        distance, speed = self.at(self.elapsed)
+        return distance / self.length, speed / self.length
 
     @property
     def slows(self) -> bool:
@@ -92,26 +89,29 @@ class CurvedLeg:
 
     def at(self, seconds: float) -> tuple[float, float]:
         """Return the distance and the speed after that time."""
-        ramp, seconds = self.ramp, max(0.0, seconds)
+        if seconds <= 0.0:
+            return 0.0, self.enters
         left = self.duration - seconds
         if left <= 0.0:
-            return self.length, 0.0
-        if left < ramp:
-            distance, speed = self._ramped(left)
+            return self.length, self.leaves
+        if left < self.ramp:
+            distance, speed = self._ramped(left, self.leaves)
             return self.length - distance, speed
-        distance, speed = self._ramped(min(seconds, ramp))
+        ramp = speeding(self.speed - self.enters, self.acceleration, self.jerk)
+        distance, speed = self._ramped(min(seconds, ramp), self.enters)
         return distance + self.speed * max(0.0, seconds - ramp), speed
 
-    def _ramped(self, seconds: float) -> tuple[float, float]:
-        """Return the distance and the speed after that time of speeding up."""
-        ramp = self.ramp
+    def _ramped(self, seconds: float, slow: float) -> tuple[float, float]:
+        """Return the distance and the speed after that time of speeding up from a speed."""
+        ramp = speeding(self.speed - slow, self.acceleration, self.jerk)
         bend = min(self.acceleration / self.jerk, ramp / 2.0)
         first, last = min(seconds, bend), max(0.0, seconds - (ramp - bend))
         even, most = max(0.0, min(seconds, ramp - bend) - bend), self.jerk * bend
         speed = self.jerk * first**2 / 2.0 + most * even + most * last - self.jerk * last**2 / 2.0
         distance = self.jerk * first**3 / 6.0 + self.jerk * bend**2 / 2.0 * (seconds - first)
         distance += most * even**2 / 2.0 + most * even * last
-        return distance + most * last**2 / 2.0 - self.jerk * last**3 / 6.0, speed
+        distance += most * last**2 / 2.0 - self.jerk * last**3 / 6.0
+        return slow * seconds + distance, slow + speed
 
 
 @dataclass
@@ -153,8 +153,8 @@ class Body:
     """Where the first of its legs begins."""
     _goal: Vector | None = None
     """Where the last of its legs ends."""
-    _passing: Corner | None = None
-    """How it has passed the end of its last leg; None: it has not."""
+    _passing: CurvedLeg | None = None
+    """The last leg, whose end it has passed; None: it has stopped there."""
     _push: Vector = STILL
     """Share of the thrust against its drag at the commanded speed that it has built up on its last leg."""
 
@@ -199,11 +199,9 @@ class Body:
         self.speed = speed
         if self._legs and self._goal is not None and not self._legs[-1].slows:
             begun = self._legs[-1]
-            distance = begun.at(begun.elapsed)[0] - begun.before[1]
+            distance = begun.at(begun.elapsed)[0]
             leg = self._leg(plus(self._goal, begun.path, -1.0), self._goal)
-            leg.elapsed = _bisected(
-                0.0, leg.duration, lambda seconds: leg.at(seconds)[0] - leg.before[1] < distance
-            )
+            leg.elapsed = _bisected(0.0, leg.duration, lambda seconds: leg.at(seconds)[0] < distance)
             self._legs[-1] = leg
 
     def plan_anew(self) -> None:
@@ -231,8 +229,10 @@ class Body:
         while self._legs and self._legs[0].left <= 0.0:
             leg = self._legs.pop(0)
             self._push, self._start = self._pushed(leg), plus(self._start, leg.path, 1.0)
-            self._passing = leg.corner
+            self._passing = leg if leg.passes else None
         position, self.velocity, self._acceleration = self._start, STILL, STILL
+        if self._passing is not None and not self._legs:
+            self.velocity = plus(STILL, self._passing.path, self._passing.leaves / self._passing.length)
         for leg in self._legs:
             share, pace = leg.now
             position = plus(position, leg.path, share)
@@ -248,18 +248,25 @@ class Body:
         left = abs(turned(self.heading, self.wanted_heading))
         return left / self.turn_rate if left > self.pivots else 0.0
 
-    def _corner(self, path: Vector) -> Corner | None:
-        """Return how it passes the end of a leg to its target, for which it slows down; None: it stops."""
+    def _passes_at(self, path: Vector) -> float | None:
+        """Return how fast it passes the end of a leg to its target; None: it stops there."""
         if not self.figures.slows_down or self.onward is None or self.target is None:
             return None
         beyond = plus(self.onward, self.target, -1.0)
-        aside = half_turn(path, beyond)
-        peaks = (CurvedLeg(each, hypot(*each), *self._limits(each)).speed for each in (path, beyond))
-        return None if aside is None else self.figures.corner(aside, *peaks)
+        aside = half_turn(path[:2], beyond[:2])
+        if aside is None:
+            return None
+        fastest = CurvedLeg(beyond, hypot(*beyond), *self._limits(beyond)).speed
+        return min(self.figures.passing(aside, hypot(*beyond[:2]), beyond[2]), fastest)
+
+    @property
+    def _fastest_level(self) -> float:
+        """Return the largest speed on level legs."""
+        return min(self.speed, self.figures.speed)
 
     def _slowness(self, leg: CurvedLeg) -> float:
         """Return how much longer a second of a leg takes, whose curve waits while thrust is built up."""
-        lag, within = self.figures.lag, self.figures.lag_within
+        lag, within = self.figures.lag_at(self._fastest_level), self.figures.lag_within
         return leg.lacks * lag / within * exp(-max(0.0, leg.elapsed) / within)
 
     def _pushed(self, leg: CurvedLeg) -> Vector:
@@ -273,31 +280,30 @@ class Body:
 
     def _drag(self, leg: CurvedLeg) -> float:
         """Return the largest drag on a leg as a share of that at the commanded speed."""
-        return (
-            leg.speed * hypot(*leg.path[:2]) / hypot(*leg.path) / min(self.speed, self.figures.speed)
-        ) ** 2
+        return (leg.speed * hypot(*leg.path[:2]) / hypot(*leg.path) / self._fastest_level) ** 2
 
     def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
         path, figures, passed = plus(end, start, -1.0), self.figures, self._passing
         speed, acceleration, jerk = self._limits(path)
-        corner = self._corner(path) if end == self.target else None
-        before, after = (
-            reaching(min(each.speed, speed), acceleration, jerk) if each else (0.0, 0.0)
-            for each in (passed, corner)
-        )
-        whole = max(hypot(*path), CLOSE) + before[1] + after[1]
-        begins = before[0] - (passed.keeps if passed else 0.0)
+        leaves = self._passes_at(path) if end == self.target else None
         leg = CurvedLeg(
-            path, whole, speed, acceleration, jerk, begins, before=before, after=after, corner=corner
+            path,
+            max(hypot(*path), CLOSE),
+            speed,
+            acceleration,
+            jerk,
+            enters=min(passed.leaves, speed) if passed else 0.0,
+            leaves=min(leaves or 0.0, speed),
+            passes=leaves is not None,
         )
         if figures.lag and path[:2] != (0.0, 0.0):
-            leg.lacks = max(0.0, 1.0 - self._drag(leg) * _along(leg, self._push))
+            leg.lacks = figures.lacks(self._drag(leg), _along(leg, self._push))
         return leg
 
     def _limits(self, path: Vector) -> tuple[float, float, float]:
         """Return the largest speed on a leg, its acceleration and its jerk."""
         figures, length = self.figures, max(hypot(*path), CLOSE)
-        speed, acceleration = min(self.speed, figures.speed), figures.acceleration
+        speed, acceleration = self._fastest_level, figures.acceleration
         if path[2]:
             steep = length / abs(path[2])
             speed = min(speed, steep * self._rate(path[2]))

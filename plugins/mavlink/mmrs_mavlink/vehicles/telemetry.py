@@ -20,7 +20,7 @@ from .motor_failures import MotorFailures
 from .position_jumps import PositionJumps
 from .readiness import lacks, unlocated
 from .texts import Announcements, Texts
-from .trail import Trail, place_in
+from .trail import Trail, item_of, place_in
 
 HEARING_SECONDS = 2.5
 """Vehicles tell their heartbeats once a second; one of them may get lost."""
@@ -308,8 +308,7 @@ class Telemetry:
 
     def item(self) -> int:
         """Return the mission item that the vehicle is at; -1 where it does not say."""
-        current = self._link.latest("MISSION_CURRENT")
-        return int(current.seq) if current is not None else -1
+        return item_of(self._link)[0]
 
     def _recent(self, kind: str) -> Message | None:
         return self._link.latest(kind) if self._link.since(kind) < RECENT_SECONDS else None

@@ -45,7 +45,22 @@ class Trail:
 
     def item_order(self) -> int:
         """Return which of the vehicle's frames its last word of its item was."""
-        return self._link.order("MISSION_CURRENT")
+        return item_of(self._link)[1]
+
+
+def item_of(link: Link) -> tuple[int, int]:
+    """Return the mission item that a vehicle is at, -1 where it does not say, and which frame said so.
+
+    A PX4 that goes to its next item sends MISSION_CURRENT at once over one of its links, and over the others
+    within a second; but over each that it has reached the item before (``mavlink_mission.cpp``).
+    """
+    current, reached = (link.latest(kind) for kind in ("MISSION_CURRENT", "MISSION_ITEM_REACHED"))
+    if current is None:
+        return -1, -1
+    order, newer = (link.order(kind) for kind in ("MISSION_CURRENT", "MISSION_ITEM_REACHED"))
+    if reached is not None and reached.seq == current.seq and newer > order:
+        return int(current.seq) + 1, newer
+    return int(current.seq), order
 
 
 def place_in(message: Message) -> Place:

@@ -252,3 +252,23 @@ def test_a_vehicle_that_does_not_know_its_place_any_more_is_where_it_was_last():
         wire.say(nowhere())
         eventually(lambda: not telemetry.placed())
         assert telemetry.here() == Geographic(42.37, 13.35, 30.0)
+
+
+AT_3 = mavlink.MAVLink_mission_current_message(3)
+
+
+@pytest.mark.parametrize(
+    ("said", "item"),
+    [
+        ((), -1),
+        ((AT_3,), 3),
+        ((AT_3, mavlink.MAVLink_mission_item_reached_message(3)), 4),
+        ((AT_3, mavlink.MAVLink_mission_item_reached_message(2)), 3),
+        ((mavlink.MAVLink_mission_item_reached_message(3), AT_3), 3),
+        ((mavlink.MAVLink_mission_item_reached_message(3),), -1),
+    ],
+    ids=["nothing", "an item", "it reached", "an earlier one reached", "set back to it", "only reached"],
+)
+def test_an_item_that_was_reached_is_behind_a_vehicle_that_says_so_last(told, said, item):
+    """A PX4 says over all links at once what it has reached, and up to a second later where it goes."""
+    assert told(*said, autopilot=PX4).item() == item
