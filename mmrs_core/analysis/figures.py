@@ -7,17 +7,16 @@ here, of move kinds their paths and durations. Lifetime, energy and dimensions a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 from math import sqrt
 from typing import cast
 
+from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.rules import MoveKind, RobotKind, most_specific, robot_kind_of
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.scene import Capability, Kinematics, Part, Position, Robot, RobotType, Scene, TravelMode
-
-_MODES: Mapping[str, TravelMode] = {"SAFE": "SAFE", "NORMAL": "NORMAL", "AGGRESSIVE": "AGGRESSIVE"}
+from mmrs_core.scene import Capability, Kinematics, Part, Position, RobotType
 
 
 class MissingFigureError(Exception):
@@ -101,23 +100,13 @@ def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
 
 
 def _kinematics(input: CheckInput, robot: RobotProgram) -> Kinematics:
-    kind = kind_of(input, robot)
-    actor = _as_actor(input, robot, kind)
-    scene = Scene(
-        name=input.program.name,
-        frame=input.program.frame,
-        tasks=(),
-        dependencies=(),
-        robots=(actor,),
-        areas=input.areas or (),
-        elements=input.elements,
-        environment=input.environment,
-        minimum_separation=input.program.minimum_separation,
-        reserve=input.program.reserve,
-        position_error=input.program.position_error,
+    kind, home = kind_of(input, robot), home_of(robot)
+    alone = replace(input.program, robots=(replace(robot, home=home),))
+    scene = scene_of(
+        alone, input.types, areas=input.areas or (), environment=input.environment, elements=input.elements
     )
     try:
-        return kind.kinematics(actor, scene)
+        return kind.kinematics(scene.robots[0], scene)
     except InfeasibleError as error:
         raise MissingFigureError(f"{robot.id}: {error}") from None
 
@@ -135,21 +124,3 @@ def seconds_of(action: Action, robot_type: RobotType) -> float | None:
     device = robot_type.devices.get(action.device)
     found = device.actions.get(action.name) if device else None
     return found.duration if found else None
-
-
-def _as_actor(input: CheckInput, robot: RobotProgram, kind: RobotKind) -> Robot:
-    robot_type = type_of(input, robot)
-    mode = _MODES.get(robot.travel_mode)
-    if mode is None:
-        raise MissingFigureError(f"{robot.id}: there is no travel mode '{robot.travel_mode}'")
-    return Robot(
-        name=robot.id,
-        type=robot_type,
-        home=home_of(robot),
-        return_home=True,
-        payload=robot.payload,
-        travel_mode=mode,
-        clearance=half_diagonal_of(robot_type) + input.program.position_error,
-        kind=kind.name,
-        place=robot.place,
-    )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.scene import Part, Robot, RobotType, Scene
+from mmrs_core.scene import Area, Part, Robot, RobotType, Scene
 
 ORIGIN = (0.0, 0.0, 0.0)
 
@@ -38,15 +38,17 @@ def scene_of(
     program: Program,
     types: Mapping[str, RobotType],
     *,
+    areas: tuple[Area, ...] = (),
     environment: Mapping[str, float] | None = None,
     elements: tuple[Part, ...] = (),
     reserve: float | None = None,
 ) -> Scene:
-    """Return a scene of the behaviour's robots, without tasks and areas.
+    """Return a scene of the behaviour's robots, without tasks.
 
     Args:
         program: the behaviour.
         types: robot types by name.
+        areas: of the context.
         environment: of the context, by attribute name.
         elements: of the context, of plug-ins.
         reserve: part of lifetime and energy that robots must leave; None: the behaviour's own.
@@ -64,6 +66,7 @@ def scene_of(
         tasks=(),
         dependencies=(),
         robots=tuple(robot_of(robot, types[robot.type_name], error) for robot in program.robots),
+        areas=areas,
         elements=elements,
         environment=environment or {},
         minimum_separation=program.minimum_separation,

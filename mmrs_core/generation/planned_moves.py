@@ -51,8 +51,9 @@ def kinematics_of(robot: RobotProgram, input: TargetInput) -> Kinematics | None:
     if type is None or kind is None or robot.home is None:
         return None
     alone = replace(input.program, robots=(robot,))
-    scene = scene_of(alone, {robot.type_name: type}, environment=input.environment, elements=input.elements)
-    scene = replace(scene, areas=input.areas)
+    scene = scene_of(
+        alone, input.types, areas=input.areas, environment=input.environment, elements=input.elements
+    )
     try:
         return kind.kinematics(scene.robots[0], scene)
     except InfeasibleError:
