@@ -11,7 +11,7 @@ pieces, exact but for rounding.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -57,10 +57,6 @@ class Pieces:
     def __len__(self) -> int:
         """Return how many there are."""
         return len(self.owners)
-
-    def later(self, seconds: float) -> Pieces:
-        """Return the same at later times."""
-        return replace(self, times=self.times + seconds)
 
 
 def pieces_of(rides: Iterable[Ride], owner: int = 0) -> Pieces:

@@ -217,6 +217,7 @@ class Traffic:
         self._timelines: Mapping[str, Timeline] = {}
         self._pieces: Mapping[str, Pieces] = {}
         self._delays: dict[str, list[tuple[DelayedStep, bool]]] = {}
+        self._apart: dict[tuple[str, str], Floats] = {}
         self._meetings: Mapping[tuple[str, str], tuple[Indices, Indices]] = {}
         self.conflicts: Mapping[tuple[str, str], Conflict] = {}
         self._update(frozenset(self._names), self._names)
@@ -235,7 +236,7 @@ class Traffic:
 
     def _update(self, changed: frozenset[str], names: Collection[str]) -> None:
         """Find where those of some robots who have changed come too near to others of them."""
-        self._timelines, self._delays = self._timing.of(self.plan), {}
+        self._timelines, self._delays, self._apart = self._timing.of(self.plan), {}, {}
         fresh = {
             name: pieces_of(self._timelines[name].rides, number)
             for number, name in enumerate(self._names)
@@ -352,16 +353,26 @@ class Traffic:
 
     def _shift(self, late: str, fixed: Mapping[str, float]) -> float:
         """Return by how many seconds a robot must start later for others, late too; inf: never."""
-        parts = [self._pieces[name].later(shift) for name, shift in fixed.items()]
-        proximity = self._proximity([*parts, self._pieces[late]])
-        count = sum(map(len, parts))
-        i, j = proximity.paths(np.arange(count), np.arange(count, len(proximity.pieces)))
-        begins, ends = proximity.delays(*self._unordered(proximity.pieces, i, j), _SPARE)
+        self._find_delays(late, [name for name in fixed if (name, late) not in self._apart])
+        spans = [self._apart[name, late] + shift for name, shift in fixed.items()]
+        begins, ends = np.concatenate(spans, axis=1)
         shift = 0.0
-        for begin, end in _united(begins, ends, np.ones(len(begins), np.bool_)):
+        for begin, end in _united(begins, ends, ends > np.maximum(begins, 0.0)):
             if begin < shift < end:
                 shift = float(np.ceil(end))
         return shift
+
+    def _find_delays(self, late: str, names: Sequence[str]) -> None:
+        """Find between which delays a robot may come too near to some others, none of which is late."""
+        if not names:
+            return
+        parts = [self._pieces[name] for name in names]
+        proximity = self._proximity([*parts, self._pieces[late]])
+        cuts = np.cumsum([len(part) for part in parts])
+        i, j = proximity.paths(np.arange(cuts[-1]), np.arange(cuts[-1], len(proximity.pieces)))
+        i, j = self._unordered(proximity.pieces, i, j)
+        spans = np.split(np.stack(proximity.delays(i, j, _SPARE)), np.searchsorted(i, cuts[:-1]), axis=1)
+        self._apart |= {(name, late): each for name, each in zip(names, spans, strict=True)}
 
     def met(self, one: str, other: str) -> list[tuple[int, int, int]]:
         """Return where two robots may come too near: a step of the other, one of the one, and its end.
