@@ -117,10 +117,11 @@ def telemetry(
     mav_type: int = QUADROTOR,
     autopilot: int = ARDUPILOT,
     origin: tuple[float, float] = (42.37, 13.35),
+    late: float = 0.0,
 ) -> bytes:
-    """Return the log that a ground station would have written."""
+    """Return the log that a ground station would have written; `late`: seconds until it gets a new item."""
     sender = mavlink.MAVLink(None, srcSystem=system, srcComponent=1)
-    return b"".join(_telemetry(samples, sender, mav_type, autopilot, origin))
+    return b"".join(_telemetry(samples, sender, mav_type, autopilot, origin, late))
 
 
 def _telemetry(
@@ -129,8 +130,10 @@ def _telemetry(
     mav_type: int,
     autopilot: int,
     origin: tuple[float, float],
+    late: float,
 ) -> Iterator[bytes]:
-    said, item = float("-inf"), -1
+    said, item, told = float("-inf"), -1, -1
+    since = float("-inf")
     for each in samples:
         stamp = struct.pack(">Q", 1_790_000_000_000_000 + round(each.time * 1e6))
 
@@ -142,7 +145,12 @@ def _telemetry(
             base = 209 if each.armed else 81
             yield frame(mavlink.MAVLink_heartbeat_message(mav_type, autopilot, base, each.mode, 4, 3))
         if each.item != item:
+            if late and item >= 0:
+                yield frame(mavlink.MAVLink_mission_item_reached_message(item))
+            since = each.time if item >= 0 else since
             item = each.item
+        if told != item and each.time >= since + late:
+            told = item
             yield frame(mavlink.MAVLink_mission_current_message(item))
         latitude = origin[0] + each.place[1] / 111_081.0
         longitude = origin[1] + each.place[0] / 82_379.0

@@ -96,6 +96,11 @@ class Gathered:
             self._target = target
             self.targets.append(time)
 
+    def has_reached(self, time: float, item: int) -> None:
+        """Note that it goes to the next item of its mission, if it was going to this one."""
+        if self._target == ("item", item):
+            self.aims_at(time, ("item", item + 1))
+
     def restarted(self) -> Gathered:
         """Return what to gather in after the vehicle has restarted, and its clock with it."""
         return Gathered(self.file, self.vehicle, self.profile, parameters=self.parameters)

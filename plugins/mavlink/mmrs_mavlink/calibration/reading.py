@@ -215,6 +215,10 @@ def _of_current_item(found: Gathered, message: Any) -> None:
     found.aims_at(found.now, ("item", message.seq))
 
 
+def _of_reached_item(found: Gathered, message: Any) -> None:
+    found.has_reached(found.now, message.seq)
+
+
 def _of_value(found: Gathered, message: Any) -> None:
     found.parameters[message.param_id] = message.param_value
 
@@ -234,6 +238,7 @@ _TELEMETRY: Mapping[str, Callable[[Gathered, Any], None]] = {
     "GLOBAL_POSITION_INT": _of_position,
     "BATTERY_STATUS": _of_battery_status,
     "MISSION_CURRENT": _of_current_item,
+    "MISSION_ITEM_REACHED": _of_reached_item,
     "PARAM_VALUE": _of_value,
 }
 _SENT: Mapping[str, Callable[[Gathered, Any], None]] = {

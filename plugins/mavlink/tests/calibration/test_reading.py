@@ -46,6 +46,13 @@ def test_logs_of_both_formats_hold_the_flight(data, log):
     assert flight.damages == ()
 
 
+def test_an_item_that_was_reached_ends_a_leg_though_the_next_one_is_told_later(log):
+    """A PX4 says where it goes up to a second later over all links but one."""
+    at_once, late = (flight_in(log(telemetry(SAMPLES, late=each), "flight.tlog")) for each in (0.0, 0.8))
+    assert len(at_once.targets) >= 2
+    assert late.targets == at_once.targets
+
+
 @pytest.mark.parametrize(
     ("firmware", "profile"),
     [("ArduRover V4.6.0", "ardurover"), ("ArduSub V4.5.1", "ardusub"), ("ArduPlane V4.6.0", None)],
