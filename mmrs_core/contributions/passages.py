@@ -129,12 +129,18 @@ class Passages:
         beyond = self._move_kinds[name].path(following, path[-1], self._robot.home) if name else None
         if beyond is None or len(beyond) < 2:
             return None
+        acts = not all(action.notifies for action in (*move.after, *following.before))
+        if acts and self._careful and index not in self._uploaded:
+            return None
         flowing = not self._careful or (index in self._uploaded and not self._stops)
         if not flowing and degrees(turn_at(path[-2], path[-1], beyond[1])) > STRAIGHT_DEGREES:
             return None
         rates = self.kinematics(move).rates(move.speed)
+        if not rates.timing.passes:
+            return None
         entering = before.speed if before is not None and len(path) == 2 else 0.0
-        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entering)
+        onward = self.kinematics(following).rates(following.speed)
+        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entering, onward)
 
 
 def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:

@@ -262,11 +262,10 @@ class Kinematics:
     def setting_out(self) -> MoveSeconds:
         """Return how long it takes until a robot sets out: one that does not launch, once it is armed.
 
-        Vehicles tell that from time to time, and two messages may be lost. After launching, the bounds of a
-        leg allow for that.
+        Vehicles tell that from time to time, and two messages may be lost.
         """
         if self.launches:
-            return MoveSeconds(0.0, self.guiding, 0.0)
+            return MoveSeconds(0.0, self.guiding, self.guiding)
         return MoveSeconds(0.0, self.launch, 3.0 * self.launch)
 
     def charging_time(self, seconds: float) -> MoveSeconds:

@@ -202,6 +202,8 @@ class Rates:
             return 0.0
         if self.bound < 0:
             end = self._early(start, end)
+        if self.bound > 0 and self.timing.slows_down:
+            start = self._behind_start(start, end)
         seconds = self.share * self._straight(start, end, push)
         if not self.bound and 0.0 < (length := dist(start, end)) <= self.accepts:
             seconds = self._among_short_ones(start, end, int(self.accepts / length) + 1)
@@ -259,35 +261,36 @@ class Rates:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""
         return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
 
-    def passage(self, before: Leg, after: Leg, entering: float = 0.0) -> Passage:
+    def passage(self, before: Leg, after: Leg, entering: float = 0.0, onward: Rates | None = None) -> Passage:
         """Return what a robot saves that passes where one leg ends and another begins.
 
         Args:
             before, after: the legs.
             entering: metres per second with which it begins the one before.
+            onward: rates of the one after; None: these.
         """
         if self.timing.slows_down:
-            return self._slowed(before, after, entering)
+            return self._slowed(before, after, entering, onward or self)
         settling, both = self.settling(*before), self.overlap(before, after) / 2.0
         starting = min(self.timing.starting, settling)
         return Passage(settling - starting + both, both + starting)
 
-    def _slowed(self, before: Leg, after: Leg, entering: float) -> Passage:
+    def _slowed(self, before: Leg, after: Leg, entering: float, onward: Rates) -> Passage:
         """Return what a robot saves that slows down for a place, as long as it need not stop for it."""
         (here, there), (_, beyond) = before, after
         aside = _half_turn((here[:2], there[:2]), (there[:2], beyond[:2]))
         if aside is None:
             return Passage(0.0, 0.0)
         speed = self.timing.passing(aside, dist(there[:2], beyond[:2]), beyond[2] - there[2])
-        first = self._curve(before, entering, min(speed, self._curve(after).fastest))
-        early = min(first.seconds, self.timing.early(first.leaves))
-        onward = self._curve(after).seconds - self._curve(after, first.leaves).seconds
+        first = self._curve(before, entering, speed)
+        early = min(first.seconds, self.timing.early(first.leaves, aside))
         saved = self._curve(before, entering).seconds - first.seconds + self.settling(*before)
-        return Passage(self.share * (saved + early), self.share * (onward - early), first.leaves)
+        begun = onward._curve(after).seconds - onward._curve(after, first.leaves).seconds
+        return Passage(self.share * (saved + early), self.share * (begun - early), first.leaves)
 
     def _curve(self, leg: Leg, enters: float = 0.0, leaves: float = 0.0) -> Curve:
         length, speed, up, down = self._limits(*leg)
-        return curve(length, speed, (up, down, self.timing.jerk), min(enters, speed), min(leaves, speed))
+        return curve(length, speed, (up, down, self.timing.jerk), enters, min(leaves, speed))
 
     def overlap(self, before: Leg, after: Leg) -> float:
         """Return how many seconds a robot saves that passes the corner between two legs.
@@ -322,10 +325,17 @@ class Rates:
         seconds, _ = self._stopping(start, end)
         more = max(0.0, entering - self.cruise)
         saved = more * speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
-        eased = max(
-            SPEEDING * self.even(start, end), self.share * (seconds - sum(self._phases(start, end)) / 2.0)
-        )
+        eased = SPEEDING * self.even(start, end)
+        if not self.timing.slows_down:
+            eased = max(eased, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
         return max(0.0, eased - saved)
+
+    def _behind_start(self, start: Position, end: Position) -> Position:
+        """Return where a leg may begin of a robot that counts the last one as over within a radius."""
+        length = dist(start, end)
+        part = 1.0 + self.timing.corner_radius / length if length > 0.0 else 0.0
+        east, north, up = (q + part * (p - q) for p, q in zip(start, end, strict=True))
+        return (east, north, up)
 
     def _early(self, start: Position, end: Position) -> Position:
         """Return where a leg may end that counts as over while the robot moves."""

@@ -43,8 +43,16 @@ def curve(
     Args:
         length: metres. speed: largest, metres per second.
         limits: acceleration and deceleration, metres per second squared, and jerk, per second cubed.
-        enters, leaves: speeds at its begin and its end, metres per second.
+        enters, leaves: speeds at its begin and its end, metres per second. One that is entered faster than
+            at its largest speed is slowed down on first.
     """
+    if enters > speed:
+        braking = speeding(enters - speed, limits[1], limits[2])
+        metres = (enters + speed) / 2.0 * braking
+        if metres >= length:
+            return Curve(braking * length / metres, enters, speed)
+        rest = curve(length - metres, speed, limits, speed, leaves)
+        return Curve(braking + rest.seconds, enters, rest.leaves)
     if enters == leaves == 0.0:
         return Curve(*stop_to_stop(length, speed, *limits), 0.0)
     up, down, jerk = limits

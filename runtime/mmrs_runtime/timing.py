@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, hypot, inf, log, sqrt
+from math import asin, exp, hypot, inf, log, sqrt, tan
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
@@ -28,6 +28,7 @@ class LegTiming:
         speed: largest that it makes, metres per second.
         climb, descent: largest that it makes, metres per second.
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
+        passes: whether it passes places; otherwise it comes to a stop at each.
         turning: share of its acceleration with which it goes round a corner that it passes, for which it
             slows down; 0: it begins the next leg before the end of the last one.
         level_within: metres by which the next place may be higher or lower where it passes one so; otherwise
@@ -73,6 +74,7 @@ class LegTiming:
     climb: float = inf
     descent: float = inf
     corner_radius: float = inf
+    passes: bool = True
     turning: float = 0.0
     level_within: float = inf
     acceptance: float = 0.0
@@ -173,10 +175,16 @@ class LegTiming:
         bend = 2.0 * self.braking**2 / self.jerk
         return sqrt(bend * bend + 2.0 * self.braking * metres) - bend
 
-    def early(self, speed: float) -> float:
-        """Return how many seconds before it is there it has passed a place, at a speed: within its radius."""
-        before = max(speed, self.stopping(self.corner_radius))
-        return 2.0 * self.corner_radius / (before + speed) if speed > 0.0 else 0.0
+    def early(self, speed: float, aside: float) -> float:
+        """Return how many seconds before half of a turn a place counts as passed: once within its radius.
+
+        Args:
+            speed: in the turn, metres per second.
+            aside: sine of half the turn.
+        """
+        half = asin(min(1.0, aside))
+        metres = self.corner_radius * (half / tan(half) if half > 0.0 else 1.0)
+        return 2.0 * metres / (max(speed, self.stopping(metres)) + speed) if speed > 0.0 else 0.0
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.

@@ -11,7 +11,7 @@ from shutil import copytree, ignore_patterns
 import pytest
 from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
 from flown_times.simulated import simulate_mission, simulate_steps
-from real_flights.routes import COPTER, Route, on_px4, routes
+from real_flights.routes import COPTER, SUB, Route, on_px4, routes
 from real_flights.table import FLIGHTS
 
 FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
@@ -44,6 +44,14 @@ def faults(flight, simulated):
     return found
 
 
+def test_a_submarines_program_may_end_below(tmp_path):
+    """Its motors stop there since the program stops them."""
+    routes(Route("Nereid", SUB, ((0.0, 5.0, -3.0), (5.0, 5.0, -4.0)), 1.0))(tmp_path / "models")
+    simulate_steps(tmp_path / "models")
+    (found,) = compared(tmp_path / "models")
+    assert found.whole
+
+
 @pytest.mark.parametrize(
     ("name", "robot", "others"),
     [
@@ -52,10 +60,12 @@ def faults(flight, simulated):
         ("tracked rover: plan in AUTO", "Crawler", 0),
         ("sub: plan in AUTO", "Nereid", 1),
         ("sub: up and down in AUTO", "Nereid", 0),
+        ("sub: transect in AUTO", "Nereid", 0),
         ("PX4: plan in AUTO", "Alba", 0),
         ("PX4: ten minutes in AUTO", "Alba", 0),
         ("PX4: strips in AUTO", "Alba", 0),
         ("PX4: quick strips in AUTO", "Alba", 5),
+        ("PX4: hops in AUTO", "Alba", 1),
     ],
 )
 def test_a_simulated_mission_takes_what_is_planned(name, robot, others, tmp_path):

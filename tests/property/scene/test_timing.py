@@ -156,12 +156,13 @@ def test_a_robot_that_slows_down_for_places_takes_each_leg_at_speeds_that_fit(ti
 def test_a_leg_between_two_speeds_is_no_shorter_than_the_way_that_it_takes(
     up, down, jerk, length, speed, enters, leaves
 ):
-    enters, leaves = min(enters, speed), min(leaves, speed)
+    leaves = min(leaves, speed)
     found = curve(length, speed, (up, down, jerk), enters, leaves)
     whole = curve(length, speed, (up, down, jerk))
-    assert length / speed - 1e-9 <= found.seconds <= whole.seconds + 1e-6
-    assert found.leaves <= leaves
-    assert max(enters, found.leaves) <= found.fastest <= speed + 1e-9
+    assert length / max(speed, enters) - 1e-9 <= found.seconds
+    assert enters > speed or found.seconds <= whole.seconds + 1e-6
+    assert found.leaves <= max(leaves, speed)
+    assert max(enters, found.leaves) <= found.fastest <= max(speed, enters) + 1e-9
     assert whole.seconds == pytest.approx(
         rates(LegTiming(up, down, jerk=jerk), speed).from_stop_to_stop(HERE, east(length)), rel=1e-6
     )
@@ -183,7 +184,11 @@ def test_bounds_are_around_what_is_expected(timing, length):
     soonest, latest = found.soonest(), found.latest()
     expected = found.from_stop_to_stop(HERE, east(length))
     assert soonest.from_stop_to_stop(HERE, east(length)) == pytest.approx(expected * (1.0 - timing.spread))
-    assert latest.from_stop_to_stop(HERE, east(length)) == pytest.approx(expected * (1.0 + timing.spread))
+    most = latest.from_stop_to_stop(HERE, east(length))
+    if timing.slows_down:  # the place before may count as passed a radius before it
+        assert most >= expected * (1.0 + timing.spread) - 1e-9
+    else:
+        assert most == pytest.approx(expected * (1.0 + timing.spread))
 
 
 @given(timings(), LENGTHS, SPEEDS, st.floats(0.0, 1.0), st.floats(0.0, 10.0), st.floats(1.0, 30.0))

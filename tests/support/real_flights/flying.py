@@ -427,6 +427,9 @@ class Flying:
         except NotComparableError as error:
             self.result.deviates.append(str(error))
         self.result.deviates += [fault for each in self.result.times for fault in each.faults()]
+        self.result.deviates += [
+            f"'{each.robot}': not completed" for each in self.result.times if not each.whole
+        ]
 
     def _end_of(self, robot: str, place: np.ndarray, last: Fix) -> str:
         kind = self.plan.vehicle(robot)

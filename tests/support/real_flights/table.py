@@ -294,15 +294,17 @@ CRAWLERS = tuple(
     for name, way in (("legs", RUN), ("plan in AUTO", PLAN))
 )
 DIVE = ((10.0, 0.0, -1.0), (10.0, 0.0, -9.0), (10.0, 15.0, -2.0), (10.0, 15.0, -9.0), (0.0, 0.0, 0.0))
+TRANSECT = tuple((0.0, 12.0 * index, -3.0) for index in range(1, 6))
+"""Places in line, the last one below."""
+
 DIVES = tuple(
-    Flight(
-        f"sub: {name}",
-        routes(Route("Nereid", SUB, DIVE, 0.8)),
-        way=way,
-        deviation=3.0,
-        landing=4.0,
+    Flight(f"sub: {name}", routes(route), way=way, deviation=3.0, landing=4.0)
+    for name, route, way in (
+        ("up and down", Route("Nereid", SUB, DIVE, 0.8), RUN),
+        ("up and down in AUTO", Route("Nereid", SUB, DIVE, 0.8), PLAN),
+        ("transect", Route("Nereid", SUB, TRANSECT, 1.0, fluid=True), RUN),
+        ("transect in AUTO", Route("Nereid", SUB, TRANSECT, 1.0, fluid=True), PLAN),
     )
-    for name, way in (("up and down", RUN), ("up and down in AUTO", PLAN))
 )
 WIND = 5.0
 """Metres per second."""

@@ -22,7 +22,7 @@ from mmrs_runtime.faults import (
 from mmrs_runtime.policies import CONTINUE, NOTHING
 from mmrs_runtime.vehicle import Fault, Vehicle
 
-from ..program import Action, GoTo, Land, Operate, Place, Recharge, Robot, Step, TakeOff
+from ..program import Action, GoTo, Land, Operate, Place, Recharge, Robot, Step, Stop, TakeOff
 from ..services.uploads import uploads_of
 from ..steps.obeying import astray, away, obeying
 from ..steps.reception import Reception
@@ -126,7 +126,8 @@ class ThreadedVehicle(Vehicle):
             job = self._moves.run(flight, self._pass)
         if self._begins_sortie(move):
             job.first(self._setup.begin_sortie)
-        if self._moves.kind(move) is Recharge:
+        kind = self._moves.kind(move)
+        if kind is Recharge or (kind is Stop and not self._robot.profile.flies):  # it may disarm anywhere
             self._watch.moving = False
         if self._moves.kind(move) is Land:
             job.append(self._landed)

@@ -317,7 +317,10 @@ class Body:
     def _begin_turn(self, target: Vector) -> None:
         """Begin the next leg where the middle of the turn is within the radius of the corner."""
         leg = self._legs[-1]
-        if self.figures.slows_down or self.onward is None or self._goal != target or not leg.slows:
+        figures = self.figures
+        if figures.slows_down or not figures.passes or self.onward is None or self._goal != target:
+            return
+        if not leg.slows:
             return
         following, half = self._leg(target, self.onward), leg.left / 2.0
         before, after = leg.length - leg.at(leg.elapsed + half)[0], following.at(half)[0]

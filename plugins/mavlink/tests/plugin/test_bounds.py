@@ -16,6 +16,7 @@ from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off
 from mmrs_core.analysis.durations import durations_of
 from mmrs_core.analysis.figures import kinematics_of
 from mmrs_core.analysis.motion import motions
+from mmrs_core.behaviour.program import DEVICE_ACTION, NOTIFY, Action
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
 from mmrs_core.contributions.timing import as_uploaded
@@ -404,6 +405,47 @@ def test_a_leg_of_no_length_takes_some_time_at_most():
     zero = bounds(go_to("there", (0.0, 10.0, 20.0)), go_to("again", (0.0, 10.0, 20.0)))["again"].moved
     assert zero.low == 0.0
     assert zero.high >= 0.5
+
+
+def passage_of(timing=None, actions=()):
+    """Return what is saved at the end of the second of three legs in line; None: the robot stops there."""
+    legs = [go_to("first", (0.0, 20.0, 20.0)), replace(go_to("second", (0.0, 40.0, 20.0)), after=actions)]
+    legs += [go_to("third", (0.0, 60.0, 20.0))]
+    robot = robot_program("alpha", [take_off("up", 20.0), *legs, LAND])
+    fluid = {index: replace(robot.transitions[index], fluid=True) for index in (2, 3)}
+    robot, given = replace(robot, transitions={**robot.transitions, **fluid}), checked(robot)
+    kinematics = kinematics_of(given, robot)
+    kinematics = kinematics if timing is None else replace(kinematics, timing=timing, mission=timing)
+    passages = Passages(robot, given.move_kinds, kinematics, local=True)
+    return passages.ahead(robot.moves[3], ((0.0, 20.0, 20.0), (0.0, 40.0, 20.0)))
+
+
+def test_vehicles_that_stop_at_each_place_save_nothing_there():
+    """ArduSub on missions: legs of 12 m in line took 15.4 to 18.7 s; PX4 leg by leg: 15 m took 8.9 s."""
+    assert passage_of() is not None
+    assert passage_of(ARDUSUB.pacing.mission) is None
+    assert passage_of(PX4_MULTICOPTER.pacing.step) is None
+
+
+def test_a_leg_that_ends_with_an_action_ends_with_a_stop_unless_it_only_notifies():
+    """PX4 took photos at places 15 m apart, in 9 s each."""
+    photo, notify = Action((DEVICE_ACTION,), "photo", "camera"), Action((NOTIFY,))
+    assert passage_of(actions=(notify,)) is not None
+    assert passage_of(actions=(photo,)) is None
+
+
+def test_a_px4_slows_down_on_a_leg_that_it_enters_faster_than_that_is_commanded():
+    """Legs of 20 m by turns at 9 and at 2 m/s: the slow ones took 6.0 to 7.0 s instead of 10 s."""
+    figures = PX4_MULTICOPTER.pacing.mission
+    assert figures is not None
+    fast, slow = (Rates(speed, figures.climb, figures.descent, figures) for speed in (9.0, 2.0))
+    before, leg, after = (((0.0, 20.0 * n, 0.0), (0.0, 20.0 * n + 20.0, 0.0)) for n in range(3))
+    entering = fast.passage(before, leg, 0.0, slow)
+    leaving = slow.passage(leg, after, entering.speed, fast)
+    assert entering.speed > 4.0
+    push = fast.push(*before, STANDING)
+    seconds = slow.from_stop_to_stop(*leg, push=push) - entering.onward - leaving.saved
+    assert 20.0 / entering.speed < seconds < 9.0
 
 
 def test_a_stop_takes_until_the_next_heartbeat():
