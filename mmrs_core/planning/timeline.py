@@ -328,7 +328,7 @@ class _Walk:
         over_home = all(dist(point[:2], self.robot.home[:2]) <= NEAR for point in column)
         relation = HomeRelation.COLUMN if over_home else HomeRelation.ELSEWHERE
         seconds = self.kinematics.upright_bounds(step.end - step.begin)
-        self._ride(column, seconds.shortest, seconds.longest, self.kinematics.rates(), relation=relation)
+        self._ride(column, [seconds.shortest], seconds.longest, self.kinematics.rates(), relation=relation)
 
     def _await(self, step: Await, given: Mapping[str, _Given]) -> None:
         waits = 0.0 if step.until is None else max(0.0, step.until - step.begin)
@@ -394,14 +394,14 @@ class _Walk:
         """Go along points; `last`: the next move, if there is one, is of the next step."""
         soonest, latest = rates.soonest(), rates.latest()
         legs = list(pairwise(points))
-        least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
+        least = [soonest.from_stop_to_stop(*leg) for leg in legs]
         most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
         slowest = min(rates.cruise, rates.climb, rates.descent)
         search = (self.radius / slowest if slowest > 0.0 else inf) if self.radius else 0.0
         out = self.kinematics.setting_out().longest if self.off else 0.0
         self.off = False
         early = self.now
-        self._ride(points, max(0.0, least - search), most + search + out, rates)
+        self._ride(points, least, most + search + out, rates, search=search)
         if self.kinematics.timing.overshoot > 0.0:
             over = self._place() + (2 if last else 1)
             self._overshoot(legs, early, speed or self.kinematics.cruise, over)
@@ -427,16 +427,17 @@ class _Walk:
     def _ride(
         self,
         points: tuple[Position, ...],
-        seconds: float,
+        quickest: Sequence[float],
         longest: float,
         rates: Rates,
         *,
+        search: float = 0.0,
         relation: HomeRelation = HomeRelation.ELSEWHERE,
     ) -> None:
-        """Go along points for so long at least, and at most."""
+        """Go along points, as quick as that on each leg but for a search, and for so long at most."""
         even = [rates.even(one, two) for one, two in pairwise(points)]
-        share = min(1.0, seconds / sum(even)) if sum(even) else 1.0
-        least = tuple(share * each for each in even)
+        least = tuple(_least_seconds(even, quickest, search))
+        seconds = max(0.0, sum(quickest) - search)
         self.by += longest
         place = self._place()
         self._add(Ride(points, self.now, self.by, least, self.radius, relation, place, place + 1))
@@ -466,6 +467,22 @@ class _Walk:
 
     def _place(self) -> int:
         return len(self.places) - 1
+
+
+def _least_seconds(even: Sequence[float], quickest: Sequence[float], search: float) -> Iterator[float]:
+    """Yield the seconds that each leg of a ride takes at least, whichever of its legs in a row are one move.
+
+    A move is that much quicker on all of its legs by which it may be quicker than at even speed.
+
+    Args:
+        even: seconds of each leg at even speed. quickest: from a stop to a stop, as quick as may be.
+        search: seconds by which a move may be shorter, or longer, as its ends are not known.
+    """
+    for i, each in enumerate(even):
+        moves = [slice(begin, end) for begin in range(i + 1) for end in range(i + 1, len(even) + 1)]
+        whole = [(sum(quickest[move]) - search, sum(even[move])) for move in moves]
+        shares = (max(0.0, seconds / steady) for seconds, steady in whole if steady)
+        yield each * min([1.0, *shares])
 
 
 def moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:

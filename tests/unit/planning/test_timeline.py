@@ -125,6 +125,17 @@ def test_an_upright_and_a_level_leg_in_a_row_are_one_ride():
     assert [point[2] for point in between.points] == [20.0, 60.0, 60.0, 20.0]
 
 
+def test_a_leg_of_a_ride_may_be_as_quick_as_in_a_move_of_its_own():
+    unsteady = with_kinematics(robot(), timing=LegTiming(2.0, spread=0.3))
+    works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((300.0, 300.0, 20.0))}
+    rides = rides_in(scene([unsteady], works, transit_altitude=60.0, minimum_separation=5.0))
+    between = next(ride for ride in rides if ride.points[0] == (300.0, 0.0, 20.0))
+    even = (40.0 / 3.0, 300.0 / 10.0, 40.0 / 2.0)
+    up, level, down = (0.7 * (each + more) for each, more in zip(even, (1.5, 5.0, 1.0), strict=True))
+    slowed = even[1] * (up + level + down) / sum(even)
+    assert between.least == pytest.approx((up, slowed, down))
+
+
 def test_a_robot_stands_at_home_from_before_the_start_until_it_leaves():
     rover = robot(kinematics=CRAWLER)
     team = (rover, robot("r2", (20.0, 0.0, 0.0)))
