@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.pacing import BESIDE, legs_beside, paced, passed_at_begin, passed_at_end
 from mmrs_core.planning.sorties import Pilot, waited
-from mmrs_core.planning.timeline import Timeline, Timelines
+from mmrs_core.planning.timeline import Timeline, Timelines, moves_along
 from mmrs_core.scene import (
     Await,
     Branch,
@@ -20,6 +20,7 @@ from mmrs_core.scene import (
     Serve,
     Signal,
     Step,
+    Stroke,
     Transit,
 )
 from mmrs_core.scene.timing import noticing
@@ -39,6 +40,7 @@ class Charges:
         self._pilots = pilots
         robots = {name: pilot.robot for name, pilot in pilots.items()}
         self._timing = Timelines(robots, hasty=True, longest=self._longest)
+        self._beside = dict[int, tuple[int, int]]()
 
     def most_used(self, plan: Plan) -> dict[str, float]:
         """Return the seconds that each robot runs on one charge at most, also if charging ends at once."""
@@ -59,10 +61,14 @@ class Charges:
         }
 
     def _longest(self, robot: str, step: Step) -> float:
-        return paced((step.stroke,), self._pilots[robot], 1)[0][1] if isinstance(step, Serve) else 0.0
+        if not isinstance(step, Serve):
+            return 0.0
+        beside = self._beside.get(id(step.stroke), BESIDE)
+        return paced((step.stroke,), self._pilots[robot], 1, beside)[0][1]
 
     def _of(self, plan: Plan, names: Collection[str]) -> dict[str, list[tuple[float, float]]]:
         """Return, by robot and sortie, the seconds used and what a diversion from its end takes longer."""
+        self._beside = {key: legs for each in plan.robots for key, legs in _legs_beside(each.steps)}
         timelines = self._timing.of(plan)
         given = {
             step.signal: timelines[each.robot].moments[i + 1][1]
@@ -75,6 +81,24 @@ class Charges:
             for each in plan.robots
             if each.robot in names
         }
+
+
+def _legs_beside(steps: Sequence[Step]) -> Iterator[tuple[int, tuple[int, int]]]:
+    """Yield, by identity of each stroke, the legs before and after it that may continue it."""
+    for i, step in enumerate(steps):
+        if isinstance(step, Serve):
+            before, after = _legs(reversed(steps[:i]), passed_at_end), _legs(steps[i + 1 :], passed_at_begin)
+            yield id(step.stroke), (before, after)
+
+
+def _legs(steps: Iterable[Step], passed: Callable[[Stroke], bool]) -> int:
+    """Return the legs that steps begin with in one go."""
+    moves = 0
+    for step in steps:
+        if not isinstance(step, Transit):
+            return legs_beside(moves, isinstance(step, Serve) and passed(step.stroke))
+        moves += len(list(moves_along(list(pairwise(step.route)))))
+    return legs_beside(moves, passes=False)
 
 
 def _uses(

@@ -19,14 +19,21 @@ from mmrs_core.planning.strokes import (
     stops_of,
     uncertain_seconds,
 )
+from mmrs_core.planning.timeline import moves_along
 from mmrs_core.scene import ActionAt, Position, Stroke
 from mmrs_core.scene.timing import MoveSeconds, acting
 
 SHORTEST_RUN = 3
 """Legs without a stop from which an autopilot may be given them as a mission."""
 
+BESIDE = 2, 2
+"""Legs before and after a stroke that may continue it without a stop where nothing is known of them: a
+hop, and a leg of what is done beyond that."""
 
-def paced(parts: Sequence[Stroke], pilot: Pilot, bound: int = 0) -> list[tuple[float, float]]:
+
+def paced(
+    parts: Sequence[Stroke], pilot: Pilot, bound: int = 0, beside: tuple[int, int] = BESIDE
+) -> list[tuple[float, float]]:
     """Return (begin, end) in seconds of each part of a work, hops included.
 
     The time for all from one part to another is the end of the latter less the begin of the former: an
@@ -40,26 +47,62 @@ def paced(parts: Sequence[Stroke], pilot: Pilot, bound: int = 0) -> list[tuple[f
         bound: -1: the robot is as quick as it may be: it does not turn, and does not stop where nothing is
             done and its routes are fluid. Then the time is no more than any run takes. 1: it is as slow as
             it may be. 0: as expected.
+        beside: legs before the first part and after the last that may continue it without a stop.
     """
-    return paced_between(parts, pilot, (bound,))[0]
+    return paced_between(parts, pilot, (bound,), beside)[0]
 
 
 def paced_between(
-    parts: Sequence[Stroke], pilot: Pilot, bounds: Sequence[int] = (-1, 0, 1)
+    parts: Sequence[Stroke],
+    pilot: Pilot,
+    bounds: Sequence[int] = (-1, 0, 1),
+    beside: tuple[int, int] = BESIDE,
 ) -> tuple[list[tuple[float, float]], ...]:
     """Return the same by bound; what all bounds have in common is found out once."""
     found = tuple(list[tuple[float, float]]() for _ in bounds)
     here: Position | None = None
-    for chain in _chains(parts):
+    chains = list(_chains(parts))
+    between = [_moves(pilot, one[-1], two[0]) for one, two in pairwise(chains)]
+    before = [beside[0], *map(legs_beside, between, (passed_at_end(chain[-1]) for chain in chains))]
+    after = [*map(legs_beside, between, (passed_at_begin(chain[0]) for chain in chains[1:])), beside[1]]
+    for chain, legs in zip(chains, zip(before, after, strict=False), strict=False):
         hop = MoveSeconds.exactly(0.0) if here is None else pilot.hop_seconds(here, chain[0])
-        known = pilot.paces.setdefault(tuple(chain), {})
+        known = pilot.paces.setdefault((tuple(chain), legs), {})
         for bound, spans in zip(bounds, found, strict=True):
             if bound not in known:
-                known[bound] = _of_chain(chain, pilot, bound)
+                known[bound] = _of_chain(chain, pilot, bound, legs)
             now = (spans[-1][1] if spans else 0.0) + hop[1 + bound]
             spans += [(now + begin, now + end) for begin, end in known[bound]]
         here = chain[-1].points[-1]
     return found
+
+
+def _moves(pilot: Pilot, one: Stroke, two: Stroke) -> int:
+    """Return the moves of a hop between strokes; 0 where they do not matter, or there is none."""
+    if pilot.travel.uploading is None or one.points[-1] == two.points[0]:
+        return 0
+    route = pilot.travel.hop(one.points[-1], two.points[0]).points
+    return len(list(moves_along(list(pairwise(route)))))
+
+
+def legs_beside(moves: int, passes: bool) -> int:
+    """Return the legs that may continue a stroke: a hop, and one beyond that if the robot passes there."""
+    return min(max(1, moves) + passes, max(BESIDE))
+
+
+def passed_at_begin(stroke: Stroke) -> bool:
+    """Return whether a robot need not stop where a stroke begins."""
+    return not stroke.settles and not any(each.at <= NEAR for each in stroke.commands)
+
+
+def passed_at_end(stroke: Stroke) -> bool:
+    """Return whether a robot need not stop where a stroke ends."""
+    length = length_of(stroke.points)
+    return _passes(stroke) and not any(each.at >= length - NEAR for each in stroke.commands)
+
+
+def _passes(stroke: Stroke) -> bool:
+    return not stroke.settles and not stroke.hold and stroke.object is None
 
 
 def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:
@@ -74,9 +117,11 @@ def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:
         yield chain
 
 
-def _of_chain(chain: Sequence[Stroke], pilot: Pilot, bound: int) -> list[tuple[float, float]]:
+def _of_chain(
+    chain: Sequence[Stroke], pilot: Pilot, bound: int, beside: tuple[int, int]
+) -> list[tuple[float, float]]:
     (whole,) = joined(chain)
-    line = _Line(whole, pilot, bound)
+    line = _Line(whole, pilot, bound, beside)
     begin, done = 0.0, 0.0
     spans = []
     for one, _ in pairwise(chain):
@@ -95,7 +140,7 @@ class _Line:
         beside: seconds that the legs before and after it may take longer, as it is flown in one go with them.
     """
 
-    def __init__(self, stroke: Stroke, pilot: Pilot, bound: int) -> None:
+    def __init__(self, stroke: Stroke, pilot: Pilot, bound: int, beside: tuple[int, int]) -> None:
         self._robot, self._timing, self._bound = pilot.robot, pilot.kinematics.timing, bound
         self._rates = pilot.travel.bounds(commanded_speed(stroke, pilot.kinematics))[1 + bound]
         self._eased = bound < 0 and pilot.travel.fluid
@@ -105,7 +150,8 @@ class _Line:
         todo = list(stroke.commands)
         due = [list(_due(todo, arc)) for arc in self._arcs]
         uploaded = pilot.travel.uploaded(commanded_speed(stroke, pilot.kinematics)) if bound > 0 else None
-        runs = list(_runs(stroke, self._halts(stroke, pilot, due))) if uploaded is not None else []
+        halts = self._halts(stroke, pilot, due) if uploaded is not None else []
+        runs = list(_runs(stroke, halts, beside)) if halts else []
         self._uploaded, self._in_runs = uploaded, {leg for run, _ in runs for leg in run}
         self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
@@ -157,23 +203,23 @@ class _Line:
         return end, self._arrivals[stop] - self._leg(stop - 1, place, self._stops[stop])
 
 
-def _runs(stroke: Stroke, halts: Sequence[bool]) -> Iterator[tuple[range, int]]:
+def _runs(stroke: Stroke, halts: Sequence[bool], beside: tuple[int, int]) -> Iterator[tuple[range, int]]:
     """Yield the legs that may be part of a mission that is uploaded, and how many of its ends continue.
 
     Args:
         stroke: of the legs.
         halts: whether the robot stops for certain before each leg, and after the last.
+        beside: legs before and after the stroke that may continue it.
     """
     if stroke.look is not None:
         return
-    last, passes = len(halts) - 1, not stroke.settles and not stroke.hold and stroke.object is None
+    last = len(halts) - 1
     stops = [0, *(i for i in range(1, last) if halts[i]), last]
     for begin, end in pairwise(stops):
-        ends = (not begin and not halts[0] and not stroke.settles) + (
-            end == last and not halts[last] and passes
-        )
-        if end - begin + ends >= SHORTEST_RUN:
-            yield range(begin, end), ends
+        before = not begin and not halts[0] and not stroke.settles
+        after = end == last and not halts[last] and _passes(stroke)
+        if end - begin + before * beside[0] + after * beside[1] >= SHORTEST_RUN:
+            yield range(begin, end), before + after
 
 
 def _due(todo: list[ActionAt], arc: float) -> Iterator[ActionAt]:

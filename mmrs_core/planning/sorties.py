@@ -27,7 +27,7 @@ class Pilot:
     """Moves one robot's state on; each action is a short function of the state.
 
     Attributes:
-        paces: by parts in one go and bound: when each begins and ends, see `paced`.
+        paces: by parts in one go, legs beside them and bound: when each begins and ends, see `paced`.
         charge: seconds that a charge allows.
         stuck: whether it cannot set out, for no charge suffices for a diversion from above home.
         fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
@@ -55,7 +55,9 @@ class Pilot:
         launches = self.kinematics.launches
         self.fresh = 0.0 if launches else self._noticing
         self.stopping = 0.0 if launches else self.kinematics.timing.reporting
-        self.paces: dict[tuple[Stroke, ...], dict[int, list[tuple[float, float]]]] = {}
+        self.paces: dict[
+            tuple[tuple[Stroke, ...], tuple[int, int]], dict[int, list[tuple[float, float]]]
+        ] = {}
         self._served: dict[Stroke, float] = {}
         self._ends: dict[Position, float] = {}
         self._exits: dict[Position, Route | None] = {}

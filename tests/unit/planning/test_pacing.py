@@ -89,3 +89,17 @@ def test_where_robots_stop_at_every_corner_the_soonest_is_what_is_planned():
     cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0))
     strict = pilot_of(minimum_separation=5.0)
     assert paced(cut, strict, -1) == paced(cut, strict)
+
+
+@pytest.mark.parametrize(("photo_at", "flown_as_mission"), [(200.0, True), (300.0, False)])
+def test_a_leg_a_hop_and_a_leg_in_one_go_may_take_as_long_as_on_a_mission(photo_at, flown_as_mission):
+    flown = with_kinematics(robot(), timing=LegTiming(2.0), mission=LegTiming(0.5))
+    pilot = pilot_of(flown)
+    one, two = (
+        road((0.0, north, 20.0), (300.0, north, 20.0), actions=(photo(at),)).strokes[0]
+        for north, at in ((0.0, 100.0), (50.0, photo_at))
+    )
+    alone, led_on = (paced(parts, pilot, 1, (1, 1))[0][1] for parts in ([one], [one, turned(two)]))
+    longer = 20.0 - 5.0
+    beside = pilot.travel.upload_seconds(1)
+    assert led_on - alone == pytest.approx((longer + beside) * flown_as_mission)
