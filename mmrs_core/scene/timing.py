@@ -84,7 +84,7 @@ class MoveSeconds(NamedTuple):
 
 def bounded(expected: float, timing: LegTiming) -> MoveSeconds:
     """Return what takes as long as expected, or by its spread longer or shorter."""
-    return MoveSeconds(expected * (1.0 - timing.spread), expected, expected * (1.0 + timing.spread))
+    return MoveSeconds(expected * max(0.0, 1.0 - timing.spread), expected, expected * (1.0 + timing.spread))
 
 
 def acting(seconds: float, timing: LegTiming) -> MoveSeconds:

@@ -136,6 +136,11 @@ def test_a_leg_of_a_ride_may_be_as_quick_as_in_a_move_of_its_own():
     assert between.least == pytest.approx((up, slowed, down))
 
 
+def test_a_launch_that_may_take_more_than_twice_as_long_is_not_over_before_it_begins():
+    unsteady = with_kinematics(robot(), timing=LegTiming(2.0, spread=1.1))
+    assert unsteady.kinematics.upright_bounds(20.0) == pytest.approx((0.0, 20.0, 42.0))
+
+
 def test_a_robot_stands_at_home_from_before_the_start_until_it_leaves():
     rover = robot(kinematics=CRAWLER)
     team = (rover, robot("r2", (20.0, 0.0, 0.0)))
