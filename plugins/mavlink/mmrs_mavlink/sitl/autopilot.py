@@ -30,9 +30,6 @@ DIGICAM, TRIGGER_DISTANCE, IMAGE = 203, 206, 2000
 SHUTTER = {DIGICAM: 4, TRIGGER_DISTANCE: 2}
 """Index of the parameter that is 1 where a command takes a photo at once; IMAGE_START_CAPTURE always does."""
 
-FASTEST_TURN = 90.0
-"""Degrees per second at which a vehicle without a parameter for that turns."""
-
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 STREAM_SECONDS, STREAM_GAP = 1.0, 0.5
 """PX4 accepts set-points that have come for a second, with gaps of at most half a second."""
@@ -235,7 +232,7 @@ class SimulatedAutopilot:
         guided = self.px4 and mode == "guided"
         body.speed = self._value(LARGEST) if guided else (speeds or [self.usual_speed()])[-1]
         body.climb, body.descent = self._value(self.settings.profile.climbs), self.usual_descent()
-        body.turn_rate = min(self._value(self.settings.profile.yaw_rates), FASTEST_TURN)
+        body.turn_rate = min(self._value(self.settings.profile.yaw_rates), pacing.turn_rate)
 
     def usual_speed(self) -> float:
         """Return the default speed, metres per second."""
