@@ -322,11 +322,11 @@ class Rates:
         if self.timing.corner_radius == inf:
             return self.even(start, end)
         end = self._early(start, end)
-        seconds, _ = self._stopping(start, end)
         more = max(0.0, entering - self.cruise)
         saved = more * speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
         eased = SPEEDING * self.even(start, end)
         if not self.timing.slows_down:
+            seconds, _ = self._stopping(start, end)
             eased = max(eased, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
         return max(0.0, eased - saved)
 

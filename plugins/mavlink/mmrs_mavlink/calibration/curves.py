@@ -76,17 +76,6 @@ class Ramp:
         return self.change * self.jerk >= 1.5 * self.acceleration**2
 
 
-def ramp_seconds(change: float, acceleration: float, jerk: float) -> float:
-    """Return how long an S-curve takes from one speed to another.
-
-    >>> ramp_seconds(10.0, 2.5, 5.0), ramp_seconds(1.0, 2.5, 1.0)
-    (4.5, 2.0)
-    """
-    if change * jerk < acceleration**2:
-        return 2.0 * sqrt(change / jerk)
-    return change / acceleration + acceleration / jerk
-
-
 def smoothed(times: Floats, values: Floats) -> Floats:
     """Return the mean of the values around each of them."""
     count = max(1, round(SMOOTHED / float(np.median(np.diff(times)))) // 2 * 2 + 1)

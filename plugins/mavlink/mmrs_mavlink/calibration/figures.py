@@ -235,7 +235,7 @@ def _leg_figures(flights: Sequence[Flight], flown_as: str, current: Current) -> 
         found = _figure(name, unit, values, missing if flown else levels[0][1].missing, flown_as)
         return replace(found, doubt=HOLDS) if not found.doubt and _holds(found, known) else found
 
-    trails = held(profile, flown_as, current).trailing > 0.0
+    trails, follows = known.trailing > 0.0, "it follows a set-point that moves at even speed"
     fitting = [each for _, level in flown for each in level.ramps if each.fits and not trails]
     rising = [each for each in fitting if each.rising]
     jerks = [each.jerk for each in rising]
@@ -243,15 +243,14 @@ def _leg_figures(flights: Sequence[Flight], flown_as: str, current: Current) -> 
     tops = fastest([each for part in flown for each in _kept(*part, 2.0 * slowest)])
     speeding = fastest([each.acceleration for each in rising if each.keeps], 0.8)
     slowing = fastest([each for part in flown for each in _decelerations(*part, jerk)], 0.8)
-    even = "it follows a set-point that moves at even speed"
-    short = even if trails else "no leg was long enough for it"
+    short = follows if trails else "no leg was long enough for it"
     yield figure("maxSpeed", "m/s", tops, "no speed was kept for 2 s")
     up = figure("maxAcceleration", "m/s²", speeding, short)
     slower = short if trails else f"{short}, so take it for maxAcceleration"
     down = figure("maxDeceleration", "m/s²", slowing, slower)
     if {up.doubt, down.doubt} == {"", HOLDS}:  # a type that states one of them states both
         up, down = replace(up, doubt=""), replace(down, doubt="")
-    changing = figure("maxJerk", "m/s³", jerks, even if trails else "no change of speed is an S-curve")
+    changing = figure("maxJerk", "m/s³", jerks, follows if trails else "no change of speed is an S-curve")
     yield from (up, down, changing)
     yield from _vertical_figures(flown, figure, jerk)
     timing = held(profile, flown_as, current, found_by((up, down, changing)))
@@ -275,7 +274,7 @@ def _leg_figures(flights: Sequence[Flight], flown_as: str, current: Current) -> 
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
     unclear = "the legs do not show it: fly short and long ones" if settled else missing
     if not limited:
-        missing = unclear = even if trails else "no acceleration to judge legs by"
+        missing = unclear = follows if trails else "no acceleration to judge legs by"
     yield figure("overshoot", "s", () if overshoot is None else (overshoot,), unclear)
     yield figure("settlingTime", "s", unbusy(settled), missing)
     even = "no speed was kept for long that the vehicle came near to only with time"

@@ -10,7 +10,8 @@ from flown_curves import ramp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_mavlink.calibration.curves import extremes, plateaus_in, ramp_seconds, ramps_in, smoothed, with_jerk
+from mmrs_mavlink.calibration.curves import extremes, plateaus_in, ramps_in, smoothed, with_jerk
+from mmrs_runtime.s_curves import speeding
 
 RATES = [4.0, 10.0, 50.0]
 
@@ -74,7 +75,7 @@ def test_the_seconds_of_a_ramp_are_those_of_its_integral(speed, acceleration, je
     step = 0.01
     speeds = ramp(speed, acceleration, jerk, step)
     assert (len(speeds) - 1) * step == pytest.approx(
-        ramp_seconds(speed, acceleration, jerk), abs=3.0 * step, rel=0.01
+        speeding(speed, acceleration, jerk), abs=3.0 * step, rel=0.01
     )
 
 
