@@ -16,13 +16,14 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean, median
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
+from mission_generator.missions import LARGEST
 from mission_generator.outcome import Outcome, outcome_of
 
 from mmrs_core.plugins import load_plugins
@@ -33,22 +34,28 @@ def contributions():
     return load_plugins().contributions
 
 
-def judged(seed):
+def judged(seed, largest):
     """Return what becomes of a mission; a crash is a complaint that says where."""
     with tempfile.TemporaryDirectory() as folder:
         try:
-            return outcome_of(seed, contributions(), Path(folder))
+            return outcome_of(seed, contributions(), Path(folder), largest)
         except Exception as error:
             last = traceback.extract_tb(error.__traceback__)[-1]
             words = f"crash: {error!r} in {Path(last.filename).name}:{last.lineno}"
-            return Outcome(seed, solvable=False, complaints=[words])
+            return Outcome(seed, solvable=False, complaints=[words], largest=largest)
 
 
-def recorded(file):
-    """Return the outcomes in a record, by seed; none if there is no such file."""
+def recorded(file, largest):
+    """Return the outcomes in a record, by seed; none if there is no such file.
+
+    Raises:
+        SystemExit: the record is of missions of another size.
+    """
     if file is None or not file.exists():
         return {}
     outcomes = [Outcome(**json.loads(line)) for line in file.read_text().splitlines()]
+    if any(tuple(each.largest) != largest for each in outcomes):
+        raise SystemExit(f"{file} is of missions of another size; give another file")
     return {each.seed: each for each in outcomes}
 
 
@@ -101,20 +108,24 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--count", type=int, default=100, help="missions")
     parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--robots", type=int, default=LARGEST[0], help="robots of a mission, at most")
+    parser.add_argument("--tasks", type=int, default=LARGEST[1], help="tasks of a mission, at most")
     parser.add_argument("--workers", type=int, default=1, help="processes")
     parser.add_argument("--record", type=Path, help="file of outcomes, a JSON object a line")
     arguments = parser.parse_args()
-    known = recorded(arguments.record)
+    largest = (arguments.robots, arguments.tasks)
+    known = recorded(arguments.record, largest)
     seeds = range(arguments.first, arguments.first + arguments.count)
     left = [seed for seed in seeds if seed not in known]
     with ProcessPoolExecutor(arguments.workers) as pool:
-        for outcome in pool.map(judged, left):
+        for outcome in pool.map(partial(judged, largest=largest), left):
             known[outcome.seed] = outcome
             if arguments.record is not None:
                 with arguments.record.open("a") as file:
                     file.write(json.dumps(asdict(outcome)) + "\n")
             for fault in faults(outcome):
                 print(fault, file=sys.stderr, flush=True)
+    print(f"missions of at most {largest[0]} robots and {largest[1]} tasks")
     print("\n".join(report([known[seed] for seed in sorted(known)])))
 
 

@@ -23,6 +23,8 @@ RADIO, FAR = 300.0, 5000.0
 HOVERING = 500.0
 """Metres that they reach in missions in which robots are relays, which others then need for most tasks."""
 DETOUR = 1.6
+LARGEST = (10, 5)
+"""Robots and tasks that a mission has at most, usually."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +49,8 @@ class Sample:
 class Maker:
     """Makes model elements of one random mission."""
 
-    def __init__(self, seed: int, registry) -> None:
-        self.seed, self.random, self.registry = seed, Random(seed), registry
+    def __init__(self, seed: int, registry, largest: tuple[int, int]) -> None:
+        self.seed, self.random, self.registry, self.largest = seed, Random(seed), registry, largest
         self.solvable = self.random.random() < 0.6
         self.taken: list[tuple[float, float, float]] = []
         self.far, self.through = 0.0, False
@@ -69,8 +71,8 @@ class Maker:
 
     def sample(self) -> Sample:
         random = self.random
-        robots = self._robots(random.randint(1, 10))
-        tasks = self._tasks(random.randint(1, 5))
+        robots = self._robots(random.randint(1, self.largest[0]))
+        tasks = self._tasks(random.randint(1, self.largest[1]))
         dependencies = self._dependencies(tasks)
         tasks += self._hovering() if self.hovering else []
         context = self._context()
@@ -352,9 +354,14 @@ class Maker:
         return Witness(way + climbs + 60.0, self.lifetime * 0.8)
 
 
-def sample(seed: int, registry) -> Sample:
-    """Return the random mission of that seed; the same seed makes the same mission."""
-    made = Maker(seed, registry).sample()
+def sample(seed: int, registry, largest: tuple[int, int] = LARGEST) -> Sample:
+    """Return the random mission of that seed; the same seed makes the same mission.
+
+    Args:
+        seed: of the mission. registry: of its languages.
+        largest: robots and tasks that it has at most.
+    """
+    made = Maker(seed, registry, largest).sample()
     if made.witness is not None and made.witness.longest_sortie > made.witness.limit:
         return Sample(made.seed, made.mission, made.context, made.robots, None)
     return made

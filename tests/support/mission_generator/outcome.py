@@ -9,7 +9,7 @@ from math import dist, inf
 import numpy as np
 import shapely
 
-from mission_generator.missions import CONTEXT, DRONE, SURVEY, sample
+from mission_generator.missions import CONTEXT, DRONE, LARGEST, SURVEY, sample
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import BEHAVIOUR
@@ -37,7 +37,8 @@ class Outcome:
 
     `refused` is why it was refused, empty if it was not. `complaints` are broken promises.
     `separation` is the metres that its robots must keep apart, 0 if none are asked for.
-    `coverage` is the share of each polygon task's target that was covered.
+    `coverage` is the share of each polygon task's target that was covered; `largest`, the robots and tasks
+    that the mission could have at most.
     """
 
     seed: int
@@ -48,13 +49,14 @@ class Outcome:
     seconds: float = 0.0
     makespan: float = 0.0
     separation: float = 0.0
+    largest: tuple[int, int] = LARGEST
 
 
-def outcome_of(seed, contributions, folder):
+def outcome_of(seed, contributions, folder, largest=LARGEST):
     """Return what becomes of the random mission of that seed; its files are written to the folder."""
-    made = sample(seed, contributions.languages)
+    made = sample(seed, contributions.languages, largest)
     apart = made.mission.minimumSeparation or 0.0
-    outcome = Outcome(seed, made.witness is not None, separation=apart)
+    outcome = Outcome(seed, made.witness is not None, separation=apart, largest=largest)
     started = time.process_time()
     write_project(made, contributions.languages, folder)
     try:
