@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from operator import itemgetter
 from typing import TypeAlias
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-Floats: TypeAlias = NDArray[np.float64]
 Shapes: TypeAlias = NDArray[np.object_]
 Side: TypeAlias = tuple[float, float]
 """Heights of a slanted line at the left and at the right side of a slab."""
+
+Edge: TypeAlias = Sequence[float]
+"""Ends x1, y1, x2, y2 of an edge, with x1 < x2."""
 
 TINY = 1e-9
 
@@ -53,7 +59,7 @@ class Cell:
         )
 
 
-def cells(wanted: Floats, open_space: Floats) -> list[list[Cell]]:
+def cells(wanted: Sequence[Edge], open_space: Sequence[Edge]) -> list[list[Cell]]:
     """Return the cells of a strip, by slab from left to right, from the target's one end to its other.
 
     A cell is as high as the free space. Whatever of the target is not inside of it (by rounding) makes a
@@ -63,15 +69,16 @@ def cells(wanted: Floats, open_space: Floats) -> list[list[Cell]]:
         wanted: edges of what is to be covered of the strip.
         open_space: edges of where a robot may be; that includes what is to be covered.
     """
-    if not len(wanted):
+    if not wanted:
         return []
-    sides = np.unique(np.concatenate([wanted[:, [0, 2]].ravel(), open_space[:, [0, 2]].ravel()]))
-    sides = sides[(sides >= wanted[:, 0].min()) & (sides <= wanted[:, 2].max())]
-    sides = sides[np.concatenate([[True], np.diff(sides) > TINY])]
+    begin, end = min(edge[0] for edge in wanted), max(edge[2] for edge in wanted)
+    ends = sorted({x for edges in (wanted, open_space) for edge in edges for x in (edge[0], edge[2])})
+    ends = [x for x in ends if begin <= x <= end]
+    sides = [ends[0], *(x for before, x in pairwise(ends) if x - before > TINY)]
     return [
-        _slab(float(left), float(right), rooms, needs)
-        for left, right, rooms, needs in zip(
-            sides[:-1], sides[1:], _bands(open_space, sides), _bands(wanted, sides), strict=True
+        _slab(left, right, rooms, needs)
+        for (left, right), rooms, needs in zip(
+            pairwise(sides), _bands(open_space, sides), _bands(wanted, sides), strict=True
         )
     ]
 
@@ -95,24 +102,25 @@ def _holds(room: Band, height: float) -> bool:
     return sum(room.low) / 2 <= height <= sum(room.high) / 2
 
 
-def _bands(edges: Floats, sides: Floats) -> list[list[Band]]:
+def _bands(edges: Sequence[Edge], sides: Sequence[float]) -> list[list[Band]]:
     """Return what lies between the edges in each slab, upwards."""
-    left, right = sides[:-1, None], sides[1:, None]
-    centre = (left + right) / 2
-    spans = (edges[:, 0] < centre) & (edges[:, 2] > centre)
-    slope = (edges[:, 3] - edges[:, 1]) / (edges[:, 2] - edges[:, 0])
-    at = np.stack([edges[:, 1] + (x - edges[:, 0]) * slope for x in (left, centre, right)])
-    slabs = []
-    for i in range(len(sides) - 1):
-        across = np.flatnonzero(spans[i])
-        across = across[np.argsort(at[1, i, across], kind="stable")]
-        lines = list(zip(at[0, i, across].tolist(), at[2, i, across].tolist(), strict=True))
-        slabs.append([Band(*pair) for pair in zip(lines[::2], lines[1::2], strict=False)])
-    return slabs
+    centres = [(left + right) / 2 for left, right in pairwise(sides)]
+    across: list[list[tuple[float, Side]]] = [[] for _ in centres]
+    for x, y, end, top in edges:
+        slope = (top - y) / (end - x)
+        for i in range(bisect_right(centres, x), bisect_left(centres, end)):
+            ends = y + (sides[i] - x) * slope, y + (sides[i + 1] - x) * slope
+            across[i].append((y + (centres[i] - x) * slope, ends))
+    for slab in across:
+        slab.sort(key=itemgetter(0))
+    return [
+        [Band(low, high) for (_, low), (_, high) in zip(slab[::2], slab[1::2], strict=False)]
+        for slab in across
+    ]
 
 
-def edges_of(shapes: Shapes) -> list[Floats]:
-    """Return (n, 4) edges (x1, y1, x2, y2) of all rings of each shape, with x1 < x2; none that is upright."""
+def edges_of(shapes: Shapes) -> list[list[Edge]]:
+    """Return the edges of all rings of each shape; none that is upright."""
     pieces, shape_of = shapely.get_parts(shapes, return_index=True)
     rings, piece_of = shapely.get_rings(pieces, return_index=True)
     points, ring_of = shapely.get_coordinates(rings, return_index=True)
@@ -121,7 +129,8 @@ def edges_of(shapes: Shapes) -> list[Floats]:
     edges[backwards] = edges[backwards][:, [2, 3, 0, 1]]
     kept = (ring_of[:-1] == ring_of[1:]) & (edges[:, 2] - edges[:, 0] > TINY)
     owners = shape_of[piece_of[ring_of[:-1][kept]]]
-    return np.split(edges[kept], np.searchsorted(owners, np.arange(1, len(shapes))))
+    by_shape = np.split(edges[kept], np.searchsorted(owners, np.arange(1, len(shapes))))
+    return [part.tolist() for part in by_shape]
 
 
 def _part(side: Side, begin: float, end: float) -> Side:
