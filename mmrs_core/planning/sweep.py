@@ -23,6 +23,9 @@ Flags: TypeAlias = NDArray[np.bool_]
 _MANY = 20_000
 """Pieces from which on compiled loops are worth their import, where they are installed."""
 
+_AT_ONCE = 1_000_000
+"""Pairs in one cell, about, that are compared at once."""
+
 
 def overlapping(
     owners: Indices, times: Floats, least: Floats, places: Floats, reach: Floats, moved: Flags
@@ -79,17 +82,18 @@ def _codes(
     keys = (which[entry] * deep + column[box]) * wide + row
     order = np.argsort(keys)
     keys, entry = keys[order], entry[order]
-    found = [np.empty(0, np.intp)]
-    alike, lag = np.arange(len(keys)), 0
-    while len(alike):
-        lag += 1
-        alike = alike[alike + lag < len(keys)]
-        alike = alike[keys[alike] == keys[alike + lag]]
-        one, two = entry[alike], entry[alike + lag]
+    here, ends = np.arange(len(keys)), np.searchsorted(keys, keys, side="right")
+    pairs = np.cumsum(ends - here - 1)
+    found = []
+    for some in np.split(here, np.searchsorted(pairs, np.arange(_AT_ONCE, int(pairs[-1]), _AT_ONCE))):
+        first, second = _each(some + 1, ends[some] - 1)
+        one, two = entry[some][first], entry[second]
         i, j = of[one], of[two]
-        near = (owners[i] != owners[j]) & (moved[i] | moved[j])
-        near[near] = (boxes[one[near], 0] < boxes[two[near], 1]).all(axis=1)
-        near[near] = (boxes[two[near], 0] < boxes[one[near], 1]).all(axis=1)
+        asked = (owners[i] != owners[j]) & (moved[i] | moved[j])
+        one, two, i, j = one[asked], two[asked], i[asked], j[asked]
+        near = np.ones(len(one), np.bool_)
+        for low, high in zip(boxes[:, 0].T, boxes[:, 1].T, strict=True):
+            near &= (low[one] < high[two]) & (low[two] < high[one])
         found.append(np.minimum(i[near], j[near]) * len(owners) + np.maximum(i[near], j[near]))
     return np.concatenate(found)
 
