@@ -293,11 +293,12 @@ def _overshot(
 ) -> Occupation:
     """Return where a robot goes beyond the end of a leg, before or just after its movement counts as over.
 
-    Only the `last` leg of a movement ends when that does; earlier ones may end as soon as it has begun.
+    Only the `last` leg of a movement ends when that does; earlier ones may end as soon as it has begun. What is
+    done before the movement is done where it begins.
     """
     target, turns_back, move, radius = piece
-    moved = times.durations[robot.id].of[move].moved
-    ahead = max(0.0, moved.low - BACK_SECONDS) if last else 0.0
+    duration = times.durations[robot.id].of[move]
+    ahead = max(duration.before.low, duration.moved.low - BACK_SECONDS if last else 0.0)
     return Occupation(
         robot=robot.id,
         move=move,
@@ -305,7 +306,7 @@ def _overshot(
         points=(target, turns_back),
         radius=radius,
         begin=times.earliest[robot.id, move] + ahead,
-        end=times.latest.get((robot.id, move), inf) + moved.high + BACK_SECONDS,
+        end=times.latest.get((robot.id, move), inf) + duration.moved.high + BACK_SECONDS,
         least=(0.0,),
         certain=(inf, -inf),
         column=column,

@@ -6,7 +6,7 @@ import pytest
 from checking import MOVE_KINDS, finding, findings, given, kind, land, recharge, strange, take_off, uneven
 
 from mmrs_core.contributions.checks import Status
-from mmrs_core.testing.small_programs import go, hold, notify, robot
+from mmrs_core.testing.small_programs import go, hold, notify, robot, robot_type, use
 
 
 def separation(*robots, least=3.0, **more):
@@ -98,6 +98,14 @@ def test_a_robot_that_stops_late_is_there_only_as_it_comes():
     a = robot("a", [hold("late", 20.0), go("east", (20.0, 0.0, 0.0))])
     b = robot("b", [hold("look", 20.0), go("away", (23.3, 60.0, 0.0))], home=(23.3, 0.0, 0.0))
     (verdict,) = separation(a, b, robot_kind=kind(overshoot=0.2))
+    assert verdict.status is Status.SAFE
+
+
+def test_a_robot_is_not_beyond_the_end_of_a_movement_while_it_does_something_before_that():
+    drone = robot_type(devices={"camera": {"Film": 10.0}})
+    a = robot("a", [go("east", (20.0, 0.0, 0.0), before=(use("camera", "Film"),))], home=(18.0, 0.0, 0.0))
+    b = robot("b", [hold("look", 8.0), go("away", (23.3, 60.0, 0.0))], home=(23.3, 0.0, 0.0))
+    (verdict,) = separation(a, b, type=drone, robot_kind=kind(overshoot=0.2))
     assert verdict.status is Status.SAFE
 
 
