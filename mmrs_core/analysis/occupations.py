@@ -293,8 +293,8 @@ def _overshot(
 ) -> Occupation:
     """Return where a robot goes beyond the end of a leg, before or just after its movement counts as over.
 
-    Only the `last` leg of a movement ends when that does; earlier ones may end as soon as it has begun. What is
-    done before the movement is done where it begins.
+    Only the `last` leg of a movement ends when that does; earlier ones may end as soon as it has begun.
+    What is done before the movement is done where it begins.
     """
     target, turns_back, move, radius = piece
     duration = times.durations[robot.id].of[move]
