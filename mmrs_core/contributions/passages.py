@@ -138,9 +138,9 @@ class Passages:
         rates = self.kinematics(move).rates(move.speed)
         if not rates.timing.passes:
             return None
-        entering = before.speed if before is not None and len(path) == 2 else 0.0
+        entered = before if len(path) == 2 else None
         onward = self.kinematics(following).rates(following.speed)
-        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entering, onward)
+        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward)
 
 
 def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:

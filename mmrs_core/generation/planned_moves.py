@@ -64,6 +64,7 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
     here = robot.home
     passed: Passage | None = None
+    entering = 0.0
     facing: float | None = None
     push: Push | None = STANDING
     local = input.program.frame.is_local
@@ -78,7 +79,8 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
             ahead = passages.ahead(move, path, passed)
             saved = sum((passed.onward if passed else 0.0, ahead.saved if ahead else 0.0))
             passed = ahead
-            limits = replace(passages.kinematics(move), facing=facing, push=push)
+            limits = replace(passages.kinematics(move), facing=facing, push=push, entering=entering)
+            entering = (move.speed or limits.cruise) if ahead is not None else 0.0
             duration = kind.seconds(move, path, limits, robot.travel_mode)
             facing = passages.facing(move, path, facing) if ahead is None else None
             push = passages.push(move, path, push)

@@ -10,12 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt
+from math import asin, atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt, tan
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
-from mmrs_runtime.s_curves import Curve, covering, curve, largest_speed, reached, speeding, stop_to_stop
+from mmrs_runtime.s_curves import (
+    Curve,
+    covering,
+    curve,
+    largest_speed,
+    reached,
+    speeding,
+    stop_to_stop,
+    turning,
+)
 from mmrs_runtime.timing import IDEAL, LegTiming, half_turn
 
 LEVEL = 1e-6
@@ -23,6 +32,9 @@ LEVEL = 1e-6
 
 STRAIGHT = 0.005
 """Half the sine of turns, about half a degree, up to which a corner is none."""
+
+NEARLY_BACK = radians(89.0)
+"""Half of a turn up to which a robot comes nearer to its next place by that."""
 
 SPEEDING = 0.97
 """Share of the seconds at even speed that a leg takes at least whose ends are passed."""
@@ -48,8 +60,8 @@ _Way: TypeAlias = tuple[Sequence[float], Sequence[float]]
 
 
 Push: TypeAlias = tuple[float, float]
-"""East and north: how much of the thrust against the drag of its hull at cruise a robot has built up. It is
-left when the robot stops, which lags less on a leg in that direction, and more on one back."""
+"""East and north: the thrust against its drag that a robot has built up, as the speed that this holds, metres
+per second. It is left when the robot stops: a leg in that direction lags less, and one back lags more."""
 
 STANDING: Push = (0.0, 0.0)
 """The push of a robot that has not moved yet."""
@@ -62,11 +74,13 @@ class Passage(NamedTuple):
         saved: seconds by which this leg is shorter: the robot begins the next one, and does not settle.
         onward: seconds by which the next one is: the robot has begun it, and does not set out from a stop.
         speed: metres per second with which it begins the next one.
+        start: where it does, if not at the end of this one.
     """
 
     saved: float
     onward: float
     speed: float = 0.0
+    start: Position | None = None
 
 
 class MoveSeconds(NamedTuple):
@@ -210,7 +224,7 @@ class Rates:
         if self.bound and self.timing.still > 0.0:
             inexact = self._between_inexact_ends(start, end)
             seconds = min(seconds, inexact) if self.bound < 0 else max(seconds, inexact)
-        if self.bound > 0 and self.timing.stall and (push is None or _along(start, end, push) < 0.0):
+        if self.bound > 0 and self.timing.stall and (push is None or _split(start, end, push)[0] < 0.0):
             seconds += self.timing.stall * exp(-dist(start, end) / self.timing.stall_within)
         return max(self.least, seconds + self.turning(start, end, facing))
 
@@ -261,32 +275,48 @@ class Rates:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""
         return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
 
-    def passage(self, before: Leg, after: Leg, entering: float = 0.0, onward: Rates | None = None) -> Passage:
+    def passage(
+        self, before: Leg, after: Leg, entered: Passage | None = None, onward: Rates | None = None
+    ) -> Passage:
         """Return what a robot saves that passes where one leg ends and another begins.
 
         Args:
             before, after: the legs.
-            entering: metres per second with which it begins the one before.
+            entered: with which it begins the one before; None: from a stop.
             onward: rates of the one after; None: these.
         """
         if self.timing.slows_down:
-            return self._slowed(before, after, entering, onward or self)
+            return self._slowed(before, after, entered or Passage(0.0, 0.0), onward or self)
         settling, both = self.settling(*before), self.overlap(before, after) / 2.0
         starting = min(self.timing.starting, settling)
         return Passage(settling - starting + both, both + starting)
 
-    def _slowed(self, before: Leg, after: Leg, entering: float, onward: Rates) -> Passage:
-        """Return what a robot saves that slows down for a place, as long as it need not stop for it."""
+    def _slowed(self, before: Leg, after: Leg, entered: Passage, onward: Rates) -> Passage:
+        """Return what a robot saves that slows down for a place, as long as it need not stop for it.
+
+        Within its radius it turns to the next leg, for a while, on an arc.
+        """
         (here, there), (_, beyond) = before, after
         aside = _half_turn((here[:2], there[:2]), (there[:2], beyond[:2]))
         if aside is None:
             return Passage(0.0, 0.0)
         speed = self.timing.passing(aside, dist(there[:2], beyond[:2]), beyond[2] - there[2])
-        first = self._curve(before, entering, speed)
-        early = min(first.seconds, self.timing.early(first.leaves, aside))
-        saved = self._curve(before, entering).seconds - first.seconds + self.settling(*before)
-        begun = onward._curve(after).seconds - onward._curve(after, first.leaves).seconds
-        return Passage(self.share * (saved + early), self.share * (begun - early), first.leaves)
+        radius = self.timing.corner_radius if speed > 0.0 else 0.0
+        begun = entered.start or here
+        near = _moved(there, before, -min(radius, dist(here, there)))
+        first = self._curve((begun, near), entered.speed, speed)
+        seconds = turning(first.leaves, aside, self.timing.acceleration, self.timing.jerk)
+        half = min(asin(min(1.0, aside)), NEARLY_BACK)
+        way = seconds * first.leaves / 2.0 * (tan(half) / half if half > 0.0 else 1.0)
+        start = _moved(_moved(near, before, way), after, way)
+        rest = onward._curve((start, beyond), first.leaves).seconds + seconds
+        saved = self._curve((begun, there), entered.speed).seconds - first.seconds + self.settling(*before)
+        return Passage(
+            self.share * saved,
+            self.share * (onward._curve(after).seconds - rest),
+            first.leaves,
+            start if radius else None,
+        )
 
     def _curve(self, leg: Leg, enters: float = 0.0, leaves: float = 0.0) -> Curve:
         length, speed, up, down = self._limits(*leg)
@@ -332,19 +362,12 @@ class Rates:
 
     def _behind_start(self, start: Position, end: Position) -> Position:
         """Return where a leg may begin of a robot that counts the last one as over within a radius."""
-        length = dist(start, end)
-        part = 1.0 + self.timing.corner_radius / length if length > 0.0 else 0.0
-        east, north, up = (q + part * (p - q) for p, q in zip(start, end, strict=True))
-        return (east, north, up)
+        return _moved(start, (start, end), -self.timing.corner_radius)
 
     def _early(self, start: Position, end: Position) -> Position:
         """Return where a leg may end that counts as over while the robot moves."""
-        length = dist(start, end)
-        if self.timing.still > 0.0 or not self.timing.acceptance or length <= 0.0:
-            return end
-        part = max(0.0, 1.0 - self.timing.acceptance / length)
-        east, north, up = (p + part * (q - p) for p, q in zip(start, end, strict=True))
-        return (east, north, up)
+        early = 0.0 if self.timing.still > 0.0 else min(self.timing.acceptance, dist(start, end))
+        return _moved(end, (start, end), -early)
 
     def _between_inexact_ends(self, start: Position, end: Position) -> float:
         """Return the fewest or most seconds of a leg: one counts as over before the robot stands at its end.
@@ -390,17 +413,21 @@ class Rates:
         """Return how much longer a leg takes that would take so long, seconds."""
         if not self.timing.lag or start[:2] == end[:2]:
             return 0.0
-        along = -float(self.bound) if push is None else _along(start, end, push)
-        lacks = self.timing.lacks(self._drag(start, end), along)
-        return lacks * self.timing.lag_at(self.cruise) * (1.0 - exp(-seconds / self.timing.lag_within))
+        along, beside = (-self.bound * self.cruise, 0.0) if push is None else _split(start, end, push)
+        lag = self.timing.lag_of(self.cruise, self._held(start, end), along, beside)
+        return lag * (1.0 - exp(-seconds / self.timing.lag_within))
 
-    def _drag(self, start: Position, end: Position) -> float:
-        """Return the largest drag on a leg as a share of that at cruise; it grows as the speed squared."""
+    def _held(self, start: Position, end: Position) -> float:
+        """Return the largest level speed on a leg; the mean one where places may be passed."""
         level, length = dist(start[:2], end[:2]), dist(start, end)
-        return (self._stopping(start, end)[1] * level / (length * self.cruise)) ** 2
+        seconds, fastest = self._stopping(start, end)
+        speed = length / seconds if self.timing.slows_down else fastest
+        return speed * level / length
 
     def push(self, start: Position, end: Position, before: Push | None) -> Push | None:
         """Return the push that is left after a leg, which grows by the time constant of the lag.
+
+        Of what is to the side, a robot keeps some that does not stop.
 
         Args:
             start, end: of the leg.
@@ -409,10 +436,11 @@ class Rates:
         east, north = end[0] - start[0], end[1] - start[1]
         if not self.timing.lag or (level := hypot(east, north)) <= LEVEL:
             return before if self.timing.lag else None
-        drag = self._drag(start, end)
         gone = exp(-self._stopping(start, end)[0] / self.timing.lag_within)
-        share = drag - (drag - _along(start, end, before)) * gone
-        return (share * east / level, share * north / level)
+        held, (along, beside) = self._held(start, end), _split(start, end, before or STANDING)
+        along = held - (held - along) * gone
+        beside = beside * gone if self.timing.slows_down else 0.0
+        return ((along * east - beside * north) / level, (along * north + beside * east) / level)
 
     def _stopping(self, start: Position, end: Position) -> tuple[float, float]:
         """Return the seconds of a leg from a stop to a stop, and its largest speed."""
@@ -458,17 +486,27 @@ class Rates:
         return length, length / even if even > 0.0 else inf, up, down
 
 
+def _moved(place: Position, leg: Leg, metres: float) -> Position:
+    """Return where a place is moved to in the direction of a leg."""
+    start, end = leg
+    part = metres / length if (length := dist(start, end)) > 0.0 else 0.0
+    east, north, up = (at + part * (q - p) for at, p, q in zip(place, start, end, strict=True))
+    return (east, north, up)
+
+
 def _half_turn(before: _Way, after: _Way) -> float | None:
     """Return the sine of half the turn between two legs; None where one has no length."""
     one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
     return half_turn(one, two)
 
 
-def _along(start: Position, end: Position, push: Push | None) -> float:
-    """Return how much of a push is along a leg; 0 where it is not known."""
+def _split(start: Position, end: Position, push: Push) -> tuple[float, float]:
+    """Return how much of a push is along a leg, and to its left; 0 for one that goes straight up or down."""
     east, north = end[0] - start[0], end[1] - start[1]
     level = hypot(east, north)
-    return (east * push[0] + north * push[1]) / level if push is not None and level > LEVEL else 0.0
+    if level <= LEVEL:
+        return 0.0, 0.0
+    return (east * push[0] + north * push[1]) / level, (east * push[1] - north * push[0]) / level
 
 
 def _rounded(away: float, aside: float, radius: float) -> float:

@@ -7,8 +7,11 @@ are metres, speeds metres per second, accelerations per second squared, and jerk
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf, sqrt
+from math import asin, inf, radians, sqrt
 from typing import NamedTuple
+
+ALIGNED = radians(11.5)
+"""Angle between its course and the next leg from which on a robot that slowed down for a corner speeds up."""
 
 
 def speeding(change: float, acceleration: float, jerk: float) -> float:
@@ -18,6 +21,21 @@ def speeding(change: float, acceleration: float, jerk: float) -> float:
     if change * jerk >= acceleration * acceleration:
         return change / acceleration + acceleration / jerk
     return 2.0 * sqrt(change / jerk)
+
+
+def turning(speed: float, aside: float, acceleration: float, jerk: float) -> float:
+    """Return for how many seconds a robot turns at even speed, before it speeds up again.
+
+    Its velocity turns by an S-curve, whose end, which is not waited for, is a parabola.
+
+    Args:
+        speed: in the turn. aside: sine of half the turn.
+        acceleration, jerk: of each part of its velocity.
+    """
+    turn = 2.0 * asin(min(1.0, aside))
+    if turn <= ALIGNED:
+        return 0.0
+    return speeding(2.0 * speed * aside, acceleration, jerk) * (1.0 - sqrt(ALIGNED / turn / 2.0))
 
 
 class Curve(NamedTuple):

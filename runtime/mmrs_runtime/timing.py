@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import asin, exp, hypot, inf, log, sqrt, tan
+from math import exp, hypot, inf, log, sqrt
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
@@ -40,7 +40,7 @@ class LegTiming:
         starting: seconds of the settling that pass as it sets out from a stop.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
             after some time, as it builds up the thrust for it; and the time constant of that, seconds.
-        lag_grows: power of the commanded speed, in metres per second, by which that is more.
+        lag_halved: commanded speed at which the lag is half of that, metres per second; faster, it is more.
         stall: seconds for which it may stand at a target before it counts as reached, at most, unless it goes
             on in the direction of its last leg.
         stall_within: metres of a leg with which that becomes less, by e.
@@ -83,7 +83,7 @@ class LegTiming:
     starting: float = 0.0
     lag: float = 0.0
     lag_within: float = 1.0
-    lag_grows: float = 0.0
+    lag_halved: float = 0.0
     stall: float = 0.0
     stall_within: float = inf
     keeps_acceleration: bool = True
@@ -138,53 +138,45 @@ class LegTiming:
         """Return whether it slows down for corners that it passes."""
         return self.turning > 0.0 and self.corner_radius > 0.0
 
-    def lag_at(self, speed: float) -> float:
-        """Return the lag at a commanded speed, metres per second."""
-        return float(self.lag * speed**self.lag_grows)
+    def lag_of(self, cruise: float, held: float, along: float, beside: float) -> float:
+        """Return how much longer a long level leg takes that a robot begins with some thrust, seconds.
 
-    def lacks(self, drag: float, along: float) -> float:
-        """Return the share of the thrust against its drag that a robot lacks as it begins a leg.
-
-        Where it slows down for corners, it has kept what is along the leg; others have lost some at stops.
+        One that slows down for corners waits as long as it is beside its path, too; another one that has
+        stopped has lost some of its thrust.
 
         Args:
-            drag: largest on the leg, as a share of that at cruise.
-            along: what it has of that thrust, as a share of the same, along the leg.
+            cruise: commanded, metres per second.
+            held: speed on the leg that drag is to be overcome for, metres per second.
+            along, beside: speeds that the thrust holds, along the leg and to its side, metres per second.
         """
-        has = max(-1.0, along / drag) if self.slows_down and drag > 0.0 else drag * along
-        return max(0.0, 1.0 - has)
+        if not self.slows_down:
+            return self.lag * max(0.0, 1.0 - held * along / cruise**2)
+        if along >= held:
+            return 0.0
+        return self.lag * hypot(held - along, beside) / (held + self.lag_halved)
 
     def passing(self, aside: float, onward: float, rise: float) -> float:
-        """Return at most how fast it passes a place that it slows down for, metres per second.
+        """Return how fast it is at a place that it slows down for, metres per second; 0: it stops there.
 
-        It takes a circle that touches both legs as far from there as its radius, and is no faster than it
-        may be to stop at the end of the next leg (``computeStartXYSpeedFromWaypoints``).
+        That is as soon as it is within its radius. In the turn it is as fast as on a circle that touches both
+        legs as far from there, and as it may be to stop at the end of the next leg
+        (``computeStartXYSpeedFromWaypoints``).
 
         Args:
             aside: sine of half the turn, in the plane.
             onward: length of the next leg, in the plane, metres. rise: height that it gains, metres.
         """
-        if onward < self.corner_radius or abs(rise) >= self.level_within:
+        if abs(rise) >= self.level_within:
             return 0.0
         ahead = sqrt(max(0.0, 1.0 - aside * aside))
         circle = self.turning * self.acceleration * self.corner_radius * ahead
-        return min(self.stopping(onward), sqrt(circle / aside) if aside > 0.0 else inf)
+        turning = min(self.nearing(onward), sqrt(circle / aside) if aside > 0.0 else inf)
+        return self.nearing(self.corner_radius, turning if onward > self.corner_radius else 0.0)
 
-    def stopping(self, metres: float) -> float:
-        """Return how fast it may be so far from where it stops, metres (``computeMaxSpeedFromDistance``)."""
-        bend = 2.0 * self.braking**2 / self.jerk
-        return sqrt(bend * bend + 2.0 * self.braking * metres) - bend
-
-    def early(self, speed: float, aside: float) -> float:
-        """Return how many seconds before half of a turn a place counts as passed: once within its radius.
-
-        Args:
-            speed: in the turn, metres per second.
-            aside: sine of half the turn.
-        """
-        half = asin(min(1.0, aside))
-        metres = self.corner_radius * (half / tan(half) if half > 0.0 else 1.0)
-        return 2.0 * metres / (max(speed, self.stopping(metres)) + speed) if speed > 0.0 else 0.0
+    def nearing(self, metres: float, last: float = 0.0) -> float:
+        """Return how fast it may be so far from where it has a speed (``computeMaxSpeedFromDistance``)."""
+        bend = 2.0 * self.braking**2 / self.jerk - last
+        return max(last, sqrt(max(0.0, bend * bend + 2.0 * self.braking * metres - last * last)) - bend)
 
     def cut(self, speed: float) -> float:
         """Return by how many metres a corner is cut at most that is passed at a speed.

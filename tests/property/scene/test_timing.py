@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from math import cos, hypot, inf, pi, radians, sin, tan
+from math import cos, dist, hypot, inf, pi, radians, sin, tan
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mmrs_core.scene import Kinematics
 from mmrs_core.scene.headings import bearing
-from mmrs_core.scene.timing import Rates
+from mmrs_core.scene.timing import Passage, Rates
 from mmrs_runtime.s_curves import curve
 from mmrs_runtime.timing import IDEAL, LegTiming
 
@@ -142,14 +142,14 @@ def test_a_robot_that_slows_down_for_places_takes_each_leg_at_speeds_that_fit(ti
         there = (here[0] + length * cos(course), here[1] + length * sin(course), here[2])
         legs.append((here, there))
         here = there
-    entering = onward = 0.0
+    entered = Passage(0.0, 0.0)
     for before, after in pairwise(legs):
-        passage = found.passage(before, after, entering)
-        level = hypot(before[1][0] - before[0][0], before[1][1] - before[0][1])
-        seconds = found.from_stop_to_stop(*before) - onward - passage.saved
+        passage = found.passage(before, after, entered)
+        level = dist(entered.start or before[0], before[1])
+        seconds = found.from_stop_to_stop(*before) - entered.onward - passage.saved
         assert seconds >= max(0.0, level - timing.corner_radius) / speed - 1e-6
         assert 0.0 <= passage.speed <= speed
-        entering, onward = passage.speed, passage.onward
+        entered = passage
 
 
 @given(LIMITS, LIMITS, LIMITS | st.just(inf), LENGTHS, SPEEDS, SPEEDS, SPEEDS)

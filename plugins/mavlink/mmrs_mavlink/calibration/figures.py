@@ -264,7 +264,7 @@ def _leg_figures(flights: Sequence[Flight], flown_as: str, current: Current) -> 
         none = "no corner was passed without a stop" if not passed else "no corner was passed more slowly"
         yield figure("cornerRadius", "m", radii, none)
     straight = [(flight, list(legs_of(flight, level.ramps, slowest))) for flight, level in flown]
-    gains = [each for part in straight for each in _gains(*part)]
+    gains = [each for part in straight for each in _gains(*part, timing)]
     if gains:
         lags = [each.lag for each in gains], [each.seconds for each in gains]
         timing = replace(timing, lag=float(np.median(lags[0])), lag_within=float(np.median(lags[1])))
@@ -338,17 +338,19 @@ def _beside(legs: Sequence[Sequence[Leg]], timing: LegTiming) -> tuple[float | N
     return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (None, plain)
 
 
-def _gains(flight: Flight, legs: Sequence[Leg]) -> list[Gain]:
+def _gains(flight: Flight, legs: Sequence[Leg], known: LegTiming) -> list[Gain]:
     """Return how fast the vehicle came near to its speed on legs, each as if it had begun without thrust."""
     found, push = list[Gain](), STANDING
     for leg in legs:
         if (gain := gain_of(flight, leg)) is None:
             push = STANDING
             continue
-        rates = Rates(gain.speed, 1.0, 1.0, LegTiming(lag=gain.lag, lag_within=gain.seconds))
+        timing = LegTiming(lag=gain.lag, lag_within=gain.seconds)
+        rates = Rates(gain.speed, 1.0, 1.0, timing)
         left = sum(one * two for one, two in zip(push, leg.way, strict=True)) / leg.length
+        left /= gain.speed
         if abs(left) < CLEAR:
-            found.append(replace(gain, lag=gain.lag / (1.0 - left)))
+            found.append(replace(gain, lag=gain.lag * (1.0 + known.lag_halved / gain.speed) / (1.0 - left)))
         push = rates.push((0.0, 0.0, 0.0), (*leg.way, 0.0), push) or STANDING
     return found
 

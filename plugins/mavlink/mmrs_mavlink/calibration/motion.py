@@ -21,6 +21,9 @@ LEAST_TURN = radians(45.0)
 TURNING = 0.2
 """Radians per second by which a course changes at least that turns."""
 
+BEGINNING = 0.5
+"""Seconds for which a turn begins and ends more slowly than that."""
+
 EVEN_SECONDS = 2.0
 """Seconds for which a speed is kept at least that counts as even."""
 
@@ -160,7 +163,7 @@ class Passage:
     Attributes:
         nearest: metres to which the vehicle came.
         turn: radians.
-        speed: slowest in the turn, metres per second.
+        speed: median in the turn, metres per second.
         beside: largest on each of its legs, of which the smaller one.
     """
 
@@ -187,10 +190,11 @@ def corners_passed(flight: Flight, chosen: Flags, slowest: float) -> Iterator[Pa
         peaks = [float(speeds[one : two + 1].max()) for one, two in zip(*ends, strict=True)]
         for (begin, end), legs in zip(turns, pairwise(peaks), strict=True):
             corner = _meeting(places[begin], velocities[begin], places[end], velocities[end])
-            if corner is not None:
+            if corner is not None and begin > 0 and end < len(times) - 1:
                 nearest = float(np.hypot(*(places[begin : end + 1] - corner).T).min())
-                turn = abs(float(courses[end] - courses[begin]))
-                yield Passage(nearest, turn, float(speeds[begin : end + 1].min()), min(legs))
+                around = np.interp((times[begin] - BEGINNING, times[end] + BEGINNING), times, courses)
+                turn = abs(float(around[1] - around[0]))
+                yield Passage(nearest, turn, float(np.median(speeds[begin : end + 1])), min(legs))
 
 
 def _turns(times: Floats, courses: Floats) -> Iterator[tuple[int, int]]:

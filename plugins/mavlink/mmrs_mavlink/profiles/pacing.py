@@ -210,10 +210,10 @@ PX4_COPTER = AutopilotTiming(
         turning=0.5,
         level_within=0.8,
         acceptance=2.0,
-        settling=0.2,
-        lag=1.95,
-        lag_within=9.7,
-        lag_grows=0.32,
+        settling=0.3,
+        lag=3.5,
+        lag_within=7.0,
+        lag_halved=1.9,
         spread=0.4,
         reporting=5.0,
     ),
@@ -266,5 +266,9 @@ side, that touches both legs within its radius, and no faster than it may be to 
 (``TrajectoryConstraints.hpp``); one that is higher or lower by NAV_MC_ALT_RAD it comes to a stop for. Legs of
 30 m at 5 m/s between turns by 45°, 90° and 135° took 8.1, 9.5 and 10.4 s in the mean, 5.2 s at 9 m/s between
 turns by 20°, and 9.5 s by 135°; in one direction, legs of 5 m at 5 m/s took 1.8 s, of 10 and 15 m at 9 m/s
-2.2 and 2.4 s, and of 15 m with 3 m up or down at 5 m/s 5.3 s. Settling and lag are fitted to 46 flights.
+2.2 and 2.4 s, and of 15 m with 3 m up or down at 5 m/s 5.3 s; legs of 12 m at 3 m/s between turns right round
+6.4 s; and in one direction legs of 20 m at 9 and at 2 m/s by turns 4.3 and 6.3 s.
+
+By its controllers alone the lag would be 1 / MPC_XY_VEL_I_ACC, 2.5 s, times v / (v + 2 MPC_XY_P), and its
+time constant 6.3 s; settling, lag and time constant are fitted to 53 flights.
 """

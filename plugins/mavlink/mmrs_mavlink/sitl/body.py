@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
-from mmrs_runtime.s_curves import curve, speeding
+from mmrs_runtime.s_curves import curve, speeding, turning
 from mmrs_runtime.timing import LegTiming, half_turn
 
 Vector = tuple[float, float, float]
@@ -48,7 +48,7 @@ class CurvedLeg:
         enters, leaves: metres per second at its ends.
         passes: whether it takes the next one at once.
         duration: seconds until its end. ramp: seconds in which it slows down.
-        lacks: share of the thrust against the drag of its hull that it lacks at its start.
+        lag: seconds that it takes longer, if it is long, as thrust against the drag is built up.
     """
 
     path: Vector
@@ -62,7 +62,7 @@ class CurvedLeg:
     passes: bool = False
     duration: float = 0.0
     ramp: float = 0.0
-    lacks: float = 0.0
+    lag: float = 0.0
 
     def __post_init__(self) -> None:
         limits = (self.acceleration, self.acceleration, self.jerk)
@@ -155,8 +155,12 @@ class Body:
     """Where the last of its legs ends."""
     _passing: CurvedLeg | None = None
     """The last leg, whose end it has passed; None: it has stopped there."""
+    _turning: float = 0.0
+    """Seconds for which it turns to the next leg yet, where it has passed a place."""
+    _yaw_rate: float = 0.0
+    """Degrees per second by which it does so."""
     _push: Vector = STILL
-    """Share of the thrust against its drag at the commanded speed that it has built up on its last leg."""
+    """Thrust against its drag that it has built up, as the speed that it holds."""
 
     def advance(self, seconds: float) -> None:
         """Move for that long."""
@@ -200,17 +204,21 @@ class Body:
         if self._legs and self._goal is not None and not self._legs[-1].slows:
             begun = self._legs[-1]
             distance = begun.at(begun.elapsed)[0]
-            leg = self._leg(plus(self._goal, begun.path, -1.0), self._goal)
+            start = self._start if len(self._legs) == 1 else plus(self._goal, begun.path, -1.0)
+            leg = self._leg(start, self._goal)
             leg.elapsed = _bisected(0.0, leg.duration, lambda seconds: leg.at(seconds)[0] < distance)
             self._legs[-1] = leg
 
     def plan_anew(self) -> None:
         """Begin the leg to its target once more, from a stop."""
         self._legs.clear()
-        self._passing = None
+        self._passing, self._turning = None, 0.0
 
     def _follow_legs(self, target: Vector, step: float) -> bool:
         """Move along S-curves to a target; return whether it does."""
+        if self._turning > 0.0:
+            self._finish_turn(step)
+            return True
         if not self._legs or self._goal not in (target, self.onward):
             if self.distance_to(target) < CLOSE:
                 self.velocity = self._acceleration = STILL
@@ -230,6 +238,8 @@ class Body:
             leg = self._legs.pop(0)
             self._push, self._start = self._pushed(leg), plus(self._start, leg.path, 1.0)
             self._passing = leg if leg.passes else None
+            if leg.passes:
+                self._begin_to_turn(leg, target)
         position, self.velocity, self._acceleration = self._start, STILL, STILL
         if self._passing is not None and not self._legs:
             self.velocity = plus(STILL, self._passing.path, self._passing.leaves / self._passing.length)
@@ -239,6 +249,21 @@ class Body:
             self.velocity = plus(self.velocity, leg.path, rate * pace)
         self.position = position
         return True
+
+    def _begin_to_turn(self, passed: CurvedLeg, target: Vector) -> None:
+        """Begin to turn to the next leg where a place counts as passed."""
+        beyond = plus(self.onward or target, target, -1.0)
+        aside = turned(course(STILL, passed.path), course(STILL, beyond))
+        half = abs(sin(radians(aside) / 2.0))
+        self._turning = turning(passed.leaves, half, self.figures.acceleration, self.figures.jerk)
+        self._yaw_rate = aside / self._turning if self._turning > 0.0 else 0.0
+
+    def _finish_turn(self, step: float) -> None:
+        """Turn at even speed."""
+        along, pace = radians(course(STILL, self.velocity) + self._yaw_rate * step), hypot(*self.velocity[:2])
+        self.velocity = (pace * cos(along), pace * sin(along), self.velocity[2])
+        self.position = plus(self.position, self.velocity, step)
+        self._turning -= step
 
     def _pivoting(self, target: Vector) -> float:
         """Begin to turn to a target; return the seconds that it does so on the spot."""
@@ -254,10 +279,7 @@ class Body:
             return None
         beyond = plus(self.onward, self.target, -1.0)
         aside = half_turn(path[:2], beyond[:2])
-        if aside is None:
-            return None
-        fastest = CurvedLeg(beyond, hypot(*beyond), *self._limits(beyond)).speed
-        return min(self.figures.passing(aside, hypot(*beyond[:2]), beyond[2]), fastest)
+        return None if aside is None else self.figures.passing(aside, hypot(*beyond[:2]), beyond[2])
 
     @property
     def _fastest_level(self) -> float:
@@ -266,38 +288,44 @@ class Body:
 
     def _slowness(self, leg: CurvedLeg) -> float:
         """Return how much longer a second of a leg takes, whose curve waits while thrust is built up."""
-        lag, within = self.figures.lag_at(self._fastest_level), self.figures.lag_within
-        return leg.lacks * lag / within * exp(-max(0.0, leg.elapsed) / within)
+        within = self.figures.lag_within
+        return leg.lag / within * exp(-max(0.0, leg.elapsed) / within)
 
     def _pushed(self, leg: CurvedLeg) -> Vector:
-        """Return the push that is left after a leg; its drag grows as its speed squared."""
+        """Return the push that is left after a leg."""
         level = hypot(*leg.path[:2])
         if not level or not self.figures.lag:
             return self._push
-        drag = self._drag(leg)
-        share = drag - (drag - _along(leg, self._push)) * exp(-leg.duration / self.figures.lag_within)
-        return (leg.path[0] * share / level, leg.path[1] * share / level, 0.0)
+        gone = exp(-leg.duration / self.figures.lag_within)
+        held, (along, beside) = self._held(leg), _split(leg, self._push)
+        along = (held - (held - along) * gone) / level
+        beside = beside * gone / level if self.figures.slows_down else 0.0
+        north, east, _ = leg.path
+        return (along * north - beside * east, along * east + beside * north, 0.0)
 
-    def _drag(self, leg: CurvedLeg) -> float:
-        """Return the largest drag on a leg as a share of that at the commanded speed."""
-        return (leg.speed * hypot(*leg.path[:2]) / hypot(*leg.path) / self._fastest_level) ** 2
+    def _held(self, leg: CurvedLeg) -> float:
+        """Return the largest level speed on a leg; the mean one where places may be passed."""
+        speed = leg.length / leg.duration if self.figures.slows_down else leg.speed
+        return speed * hypot(*leg.path[:2]) / hypot(*leg.path)
 
     def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
         path, figures, passed = plus(end, start, -1.0), self.figures, self._passing
-        speed, acceleration, jerk = self._limits(path)
         leaves = self._passes_at(path) if end == self.target else None
+        if leaves:
+            path = plus(path, path, -min(1.0, figures.corner_radius / max(hypot(*path), CLOSE)))
+        speed, acceleration, jerk = self._limits(path)
         leg = CurvedLeg(
             path,
             max(hypot(*path), CLOSE),
             speed,
             acceleration,
             jerk,
-            enters=min(passed.leaves, speed) if passed else 0.0,
+            enters=passed.leaves if passed else 0.0,
             leaves=min(leaves or 0.0, speed),
             passes=leaves is not None,
         )
         if figures.lag and path[:2] != (0.0, 0.0):
-            leg.lacks = figures.lacks(self._drag(leg), _along(leg, self._push))
+            leg.lag = figures.lag_of(self._fastest_level, self._held(leg), *_split(leg, self._push))
         return leg
 
     def _limits(self, path: Vector) -> tuple[float, float, float]:
@@ -401,10 +429,10 @@ def turned(before: float, after: float) -> float:
     return (after - before + 180.0) % 360.0 - 180.0
 
 
-def _along(leg: CurvedLeg, push: Vector) -> float:
-    """Return how much of a push is along a leg."""
-    level = hypot(*leg.path[:2])
-    return (leg.path[0] * push[0] + leg.path[1] * push[1]) / level if level else 0.0
+def _split(leg: CurvedLeg, push: Vector) -> tuple[float, float]:
+    """Return how much of a push is along a leg, and to its right."""
+    (north, east), level = leg.path[:2], hypot(*leg.path[:2])
+    return (north * push[0] + east * push[1]) / level, (north * push[1] - east * push[0]) / level
 
 
 def _bisected(low: float, high: float, below: Callable[[float], bool]) -> float:

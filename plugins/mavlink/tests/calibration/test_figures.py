@@ -155,13 +155,17 @@ def test_the_radius_of_a_px4_is_the_tangent_of_the_circle_for_which_it_slows_dow
     assert found == (radius if radius is None else pytest.approx(radius, rel=0.01))
 
 
-def test_the_corners_of_a_simulated_px4_tell_its_radius(tmp_path):
+def test_the_corners_of_a_simulated_px4_tell_how_fast_it_passes_them(tmp_path):
+    """That is by its radius and its acceleration, of which the flight shows less."""
     places = tuple((30.0 * number, 40.0 + 30.0 * (number % 2), 12.0) for number in range(6))
     on_px4(routes(Route("Alba", CRAFT, places, 8.0, fluid=True)))(tmp_path / "zigzag")
     simulate_mission(tmp_path / "zigzag", "Alba")
-    radius = figures(tmp_path, log_of(tmp_path / "zigzag", "Alba", PX4))["MISSION", "cornerRadius"]
+    found = figures(tmp_path, log_of(tmp_path / "zigzag", "Alba", PX4))
+    radius, acceleration = (found["MISSION", name] for name in ("cornerRadius", "maxAcceleration"))
     assert len(radius.values) >= 3
-    assert radius.median == pytest.approx(PROFILES["px4-multicopter"].pacing.mission.corner_radius, rel=0.1)
+    pacing = PROFILES["px4-multicopter"].pacing.mission
+    shown = radius.median * acceleration.median
+    assert shown == pytest.approx(pacing.corner_radius * pacing.acceleration, rel=0.1)
 
 
 def _round_a_corner(radius, speed, rate=10.0):

@@ -271,7 +271,7 @@ def legs_of(rates, lengths, aside=0.0):
         here = there
     passage, push = Passage(0.0, 0.0), STANDING
     for leg, after in pairwise(route):
-        before, passage = passage, rates.passage(leg, after, passage.speed)
+        before, passage = passage, rates.passage(leg, after, passage)
         if leg is not route[0]:
             yield leg, push, rates.from_stop_to_stop(*leg, push=push) - before.onward - passage.saved
         push = rates.push(*leg, push)
@@ -317,6 +317,7 @@ PX4_PASSES = [
     (5.0, 20.0, 0.0, 4.2),
     (9.0, 30.0, 0.0, 3.6),
     (5.0, 60.0, 0.0, 12.3),
+    (3.0, 12.0, 180.0, 6.4),
 ]
 """Speed, metres, degrees to the right and the left between which they are, and the mean of eight legs."""
 
@@ -337,7 +338,7 @@ def test_a_px4_stops_for_a_place_that_is_higher_or_lower_and_does_not_settle():
     route = [(0.0, 15.0 * index, 3.0 * index) for index in range(9)]
     passage, push, found = Passage(0.0, 0.0), STANDING, []
     for leg, after in pairwise(pairwise(route)):
-        before, passage = passage, rates.passage(leg, after, passage.speed)
+        before, passage = passage, rates.passage(leg, after, passage)
         found.append(rates.from_stop_to_stop(*leg, push=push) - before.onward - passage.saved)
         push = rates.push(*leg, push)
     assert mean(found[1:]) == pytest.approx(5.3, rel=0.1)
@@ -440,12 +441,23 @@ def test_a_px4_slows_down_on_a_leg_that_it_enters_faster_than_that_is_commanded(
     assert figures is not None
     fast, slow = (Rates(speed, figures.climb, figures.descent, figures) for speed in (9.0, 2.0))
     before, leg, after = (((0.0, 20.0 * n, 0.0), (0.0, 20.0 * n + 20.0, 0.0)) for n in range(3))
-    entering = fast.passage(before, leg, 0.0, slow)
-    leaving = slow.passage(leg, after, entering.speed, fast)
+    entering = fast.passage(before, leg, None, slow)
+    leaving = slow.passage(leg, after, entering, fast)
     assert entering.speed > 4.0
     push = fast.push(*before, STANDING)
     seconds = slow.from_stop_to_stop(*leg, push=push) - entering.onward - leaving.saved
-    assert 20.0 / entering.speed < seconds < 9.0
+    assert seconds == pytest.approx(6.5, rel=0.1)
+
+
+def test_an_underwater_vehicle_loses_the_thrust_of_a_fast_leg_on_a_slow_one_back():
+    """ArduSub took 48.9 s for 12 m at 0.4 m/s back, after as much at 1.2 m/s; 29 s of that are even speed."""
+    figures = ARDUSUB.pacing.mission
+    assert figures is not None
+    fast, slow = (Rates(speed, figures.climb, figures.descent, figures) for speed in (1.2, 0.4))
+    push = slow.push((0.0, 0.0, 0.0), (0.0, 12.0, 0.0), STANDING)
+    push = fast.push((0.0, 12.0, 0.0), (0.0, 24.0, 0.0), push)
+    back = slow.from_stop_to_stop((0.0, 24.0, 0.0), (0.0, 12.0, 0.0), push=push)
+    assert back == pytest.approx(48.9, rel=0.1)
 
 
 def test_a_stop_takes_until_the_next_heartbeat():
