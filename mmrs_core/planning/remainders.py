@@ -27,6 +27,10 @@ from mmrs_core.scene import Coverage, Position, Stroke, Work
 _ROUNDING = 1e-6
 """Share of a part's ground, and length of a stretch, that are rounding."""
 
+_THIN = 1e-3
+"""Metres of width of patches that count as covered: strips of two sorts that are laid alike but for a little,
+since they keep away from areas by different distances, would be gone along twice for these."""
+
 Shapes: TypeAlias = NDArray[np.object_]
 _Part: TypeAlias = tuple[int, int]
 """A sort, and the index of a part of its work."""
@@ -97,7 +101,7 @@ class Remainders:
     def _patches_of(self, sort: int, part: int) -> list[int]:
         """Return, for each patch of the ground under a part, the set of parts of other sorts that cover it.
 
-        Patches that are covered wherever another one is are left out, and those that are rounding.
+        Patches that are covered wherever another one is are left out, and those that are rounding or thin.
         """
         if (sort, part) not in self._patches:
             own, alike = self._ground_of(sort)[part], dict[bytes, int]()
@@ -109,6 +113,7 @@ class Remainders:
             inner = shapely.intersection(shapely.boundary(shapes), own)
             edges = shapely.union_all([shapely.boundary(own), *inner], grid_size=GRID)
             patches = shapely.get_parts(shapely.polygonize(shapely.get_parts(edges)))
+            patches = patches[2.0 * shapely.area(patches) > _THIN * shapely.length(patches)]
             patches = patches[np.argsort(shapely.area(patches), kind="stable")]
             whole = np.cumsum(shapely.area(patches)) > _ROUNDING * (1.0 + own.area)
             inside = shapely.point_on_surface(patches[whole])

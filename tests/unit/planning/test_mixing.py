@@ -134,6 +134,18 @@ def test_what_others_photograph_beside_their_own_target_is_not_photographed_agai
     assert known.left(1, [Turn(0, left=every, done=every)]) == frozenset()
 
 
+def test_strips_that_are_laid_alike_but_for_less_than_a_millimetre_are_not_photographed_again():
+    one = field_work(scene((robot(),), {}), FIELD, width=7.5, length=6.0)
+    aside = tuple(
+        replace(each, points=tuple((east, north + 4e-4, up) for east, north, up in each.points))
+        for each in one.strokes
+    )
+    known = Remainders([one, replace(one, strokes=aside)])
+    every = range(len(known.parts[0]))
+    done = frozenset(every[: len(every) // 2])
+    assert known.left(1, [Turn(0, left=frozenset(every), done=done)]) == frozenset(every) - done
+
+
 def test_works_with_nothing_in_common_are_not_shared():
     aside = replace(WIDE, strokes=(Stroke(((0.0, 70.0, 20.0), (90.0, 70.0, 20.0))),))
     with pytest.raises(InfeasibleError, match="r1 cannot share it with r2"):
