@@ -14,7 +14,7 @@ from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_flyaq.rules.mapping import DialectMapping
 from mmrs_flyaq.rules.paths import Classes
 from mmrs_flyaq.rules.rules_file import read_rules
-from mmrs_flyaq.rules.toml_tables import Table, TooMuchError, line_of, parsed
+from mmrs_flyaq.rules.toml_tables import Table, line_of
 from mmrs_flyaq.sources.documents import KnownDocument
 from mmrs_flyaq.sources.metamodels import Dialect
 from mmrs_flyaq.sources.structure import Structure, declared_structure
@@ -46,15 +46,13 @@ def read_dialect(path: Path) -> DialectMapping:
 def _read(path: Path, made_of: Callable[[Table], DialectMapping]) -> DialectMapping:
     try:
         text = read_bytes(path, LARGEST).decode()
-        value = parsed(text)
-    except UnicodeDecodeError as fault:
-        raise UnreadableError(f"{path}: not TOML: {str(fault).lower()}") from None
-    except tomllib.TOMLDecodeError as fault:
+        value = tomllib.loads(text)
+    except ValueError as fault:  # neither UTF-8 nor TOML, or a number that Python does not read
         line = _LINE.search(str(fault))
         place = f"{path}:{line[1]}" if line else str(path)
         raise UnreadableError(f"{place}: not TOML: {str(fault).lower()}") from None
-    except TooMuchError as fault:
-        raise UnreadableError(f"{path}:{fault.line}: {fault}") from None
+    except RecursionError:
+        raise UnreadableError(f"{path}: nested too deeply") from None
     top = Table(str(path), value)
     if not value.get("rules"):
         raise top.fault("contains no rules")

@@ -132,52 +132,8 @@ def _called(value: object) -> str:
 _HEADER = re.compile(r"\s*(\[[^\[\]]+\])\s*(#.*)?")
 _TRANSPARENT = "features"
 """The table that messages leave out: messages about its content name the class."""
-
-
-LONGEST_LINE = 4_000
-"""Characters of a line: far more than any mapping has."""
-MOST_BRACKETS = 100
-"""Opened on one line, or not closed yet: the parser goes deeper with each."""
-MOST_KEYS = 50
-"""Parts of a dotted key on one line."""
 _MOST_SIGNS = 50
 """Signs of equality in a key, in quotes."""
-
-_LONG_KEY = re.compile(r"^\s*+\[*+(?:[^.=\"']*+\.){50}")
-_LONG_NUMBER = re.compile(r"[0-9_]{400}")
-
-
-class TooMuchError(ValueError):
-    """A line that holds more than any mapping has.
-
-    Attributes:
-        line: counted from 1.
-    """
-
-    def __init__(self, line: int, what: str) -> None:
-        super().__init__(what)
-        self.line = line
-
-
-def parsed(text: str) -> dict[str, Any]:
-    """Return what a text of TOML holds.
-
-    Raises:
-        TooMuchError: if a line is longer, nests deeper or has longer numbers or keys than any mapping's.
-        tomllib.TOMLDecodeError: if it is not TOML.
-    """
-    deep = 0
-    for number, line in enumerate(text.split("\n"), 1):
-        if len(line) > LONGEST_LINE:
-            raise TooMuchError(number, f"longer than {LONGEST_LINE} characters: divide the line")
-        if _LONG_NUMBER.search(line):
-            raise TooMuchError(number, "a number of more than 400 digits")
-        if _LONG_KEY.search(line):
-            raise TooMuchError(number, f"a key of more than {MOST_KEYS} parts")
-        deep = max(0, deep + sum(map(line.count, "[{")) - sum(map(line.count, "]}")))
-        if max(deep, line.count("["), line.count("{")) > MOST_BRACKETS:
-            raise TooMuchError(number, f"nested deeper than {MOST_BRACKETS} brackets, or as many on one line")
-    return tomllib.loads(text)
 
 
 def line_of(text: str, *ways: Sequence[str]) -> int:

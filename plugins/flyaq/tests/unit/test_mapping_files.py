@@ -245,24 +245,6 @@ def test_a_mapping_without_rules_is_none(read, text):
         read(text)
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "x = " + "[" * 3000,
-        "x = " + "{a=" * 1000,
-        "x = " + "1" * 3999,
-        "x = " + "1_" * 1900,
-        "a" * 40_000 + " = 1",
-        ".".join("a" * 1500) + " = 1",
-        "[" + ".".join("a" * 1500) + "]",
-        "# " + "=" * 40_000,
-    ],
-)
-def test_a_line_that_would_overwhelm_the_parser_is_refused_by_its_number(read, line):
-    with pytest.raises(UnreadableError, match=r"m\.toml:2: "):
-        read(f'name = "x"\n{line}\n{GOOD}')
-
-
-def test_brackets_of_many_lines_are_refused_where_they_are_too_many(read):
-    with pytest.raises(UnreadableError, match=r"m\.toml:101: nested deeper"):
-        read("x = [\n" + "[\n" * 5000)
+def test_a_mapping_that_nests_too_deeply_for_the_parser_is_refused(read):
+    with pytest.raises(UnreadableError, match=r"m\.toml: nested too deeply"):
+        read("x = " + "[" * 3000)
