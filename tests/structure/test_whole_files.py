@@ -36,8 +36,10 @@ FILES = {
 def test_every_test_of_every_file_is_run_once(tmp_path):
     for name, text in {"conftest.py": CONFTEST, "pytest.ini": "[pytest]\n", **FILES}.items():
         (tmp_path / name).write_text(text, "utf-8")
-    words = ["-v", "-n", "2", "--dist", "loadgroup", "-p", "no:cacheprovider", "-k", "not other"]
+    plugins = ["-p", "xdist.plugin", "-p", "pytest_timeout", "-p", "no:cacheprovider"]
+    words = [*plugins, "-v", "-n", "2", "--dist", "loadgroup", "-k", "not other"]
     others = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    others["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *words], cwd=tmp_path, env=others, capture_output=True, text=True
     )
