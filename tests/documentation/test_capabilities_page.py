@@ -1,7 +1,5 @@
 """The pages about capabilities are what trying gives; `--update-golden` writes them anew."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The page about diagnostics is what the code says, and its examples are true."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The driver on its page drives: its code is installed, generates, and moves a kart that the test is."""
 
-from __future__ import annotations
-
 import os
 import socketserver
 import subprocess

@@ -1,7 +1,5 @@
 """The code on the pages works: commands are typed, Python is run, files are written as their titles say."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The kinds of robot that the pages show satisfy the kit that they are judged by."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The page about templates tells what each of them sees."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

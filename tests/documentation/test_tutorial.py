@@ -1,7 +1,5 @@
 """The tutorial leads where it says: its files are written and its commands run, in its order."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

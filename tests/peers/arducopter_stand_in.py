@@ -3,8 +3,6 @@
 It stands in for the binary in a test of what starts that, and proves nothing about ArduPilot.
 """
 
-from __future__ import annotations
-
 import argparse
 import threading
 from pathlib import Path

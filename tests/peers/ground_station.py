@@ -3,8 +3,6 @@
 It listens for vehicles, tells each that it hears, and sends heartbeats to all, once a second.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 

@@ -3,8 +3,6 @@
 Usage: python mavsdk_autopilot.py PORT; ends when its standard input does.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 

@@ -4,8 +4,6 @@ Usage: python mavsdk_import.py PORT FILE...; the vehicle must be sending to PORT
 QGroundControl, or lists of waypoints where they end in ``.waypoints``.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path

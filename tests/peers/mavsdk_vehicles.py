@@ -10,8 +10,6 @@ set-points, changes of the mode and of the speed, cameras, heartbeats, the healt
 pre-arm check, and how the vehicle moves.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections import deque

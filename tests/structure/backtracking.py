@@ -6,8 +6,6 @@ from q to q, from q to p, and from p to p (Weber and Seidl, "On the degree of am
 1991). Where an expression is searched for, the positions where a match may begin are one more loop.
 """
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """One name, one thing: no two public classes of a distribution share a name."""
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 from pathlib import Path

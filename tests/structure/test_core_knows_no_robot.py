@@ -1,7 +1,5 @@
 """The core names no robot, and nothing that a plug-in brings: these come by hooks."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator

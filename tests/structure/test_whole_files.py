@@ -1,7 +1,5 @@
 """Workers that share out whole files run every test once, and report what keeps a file from being run."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

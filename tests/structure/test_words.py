@@ -1,7 +1,5 @@
 """The words in which the project speaks: docstrings, messages, pages and names keep to the glossary."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

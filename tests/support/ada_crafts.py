@@ -1,7 +1,5 @@
 """The side of the bus of decision centres in Ada, held against that of the interpreter: frame by frame."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import struct

@@ -1,7 +1,5 @@
 """Ways back, as scripts for the modules of a decision centre in Ada."""
 
-from __future__ import annotations
-
 from random import Random
 
 from ada_crafts import bits

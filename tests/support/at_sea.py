@@ -1,7 +1,5 @@
 """A simulated vehicle on its bus, and a node that commands its thrusters."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from sample_vessels import pool_sheet

@@ -1,7 +1,5 @@
 """Wheels of projects that hatchling builds, all by one process."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Iterable

@@ -4,8 +4,6 @@
 be reached; ``to`` and ``took``, seconds until a notify was acknowledged.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import time

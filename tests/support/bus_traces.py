@@ -1,7 +1,5 @@
 """What a decision centre does, as anybody on its bus and in its log sees it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

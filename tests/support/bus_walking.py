@@ -4,8 +4,6 @@ Run as a script, one process of them: ``bus_walking.py BEHAVIOUR ROBOT FOLDER [o
 behaviour is one of `BEHAVIOURS`.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -1,7 +1,5 @@
 """Drives in C as they are generated: built here, and held against those of the simulated vehicle."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The page of the documentation that says what each target can express."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 

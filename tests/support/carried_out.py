@@ -1,7 +1,5 @@
 """Runs of the engine with vehicles that a test has made."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from mmrs_runtime.engine.clocks import SimulatedClock

@@ -1,7 +1,5 @@
 """The code in pages of Markdown: found, and run as a reader would."""
 
-from __future__ import annotations
-
 import contextlib
 import doctest
 import json

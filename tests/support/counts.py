@@ -1,7 +1,5 @@
 """Counts of examples that differ from those of hypothesis' profiles."""
 
-from __future__ import annotations
-
 from hypothesis import settings
 
 FAST_MOST = 50

@@ -1,7 +1,5 @@
 """A TCP proxy on loopback that can be cut: nothing passes, nobody is told, until it heals."""
 
-from __future__ import annotations
-
 import socket
 import threading
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """The page of the documentation that lists every diagnostic."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby

@@ -1,7 +1,5 @@
 """Random models of a dialect that a mapping declares, written as XMI and in every spelling of JSON."""
 
-from __future__ import annotations
-
 import json
 from random import Random
 from xml.sax.saxutils import quoteattr

@@ -1,7 +1,5 @@
 """Dives of simulated vehicles, and what came of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path

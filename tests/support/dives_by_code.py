@@ -1,7 +1,5 @@
 """Dives in real time: by the interpreter and by generated code, on the bus of a vehicle that runs."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A simulated ArduSub that does not know where it is, and its robot, which is driven by hand."""
 
-from __future__ import annotations
-
 from contextlib import contextmanager
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Drawings as map programs make them, at random, and how far two of them are apart."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import strategies as st
 

@@ -1,7 +1,5 @@
 """A small scene with its plan: two drones, one field, one road, a tower and a forbidden area."""
 
-from __future__ import annotations
-
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import (
     ActionAt,

@@ -1,7 +1,5 @@
 """What the referee prints of metamodels and models, made from our own objects."""
 
-from __future__ import annotations
-
 import struct
 from datetime import UTC, datetime, timedelta
 from decimal import Decimal

@@ -1,7 +1,5 @@
 """True examples of faults: models that fail and pass, and the parts in which they differ."""
 
-from __future__ import annotations
-
 import re
 import runpy
 from collections.abc import Callable, Iterable, Mapping, Sequence

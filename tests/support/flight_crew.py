@@ -1,7 +1,5 @@
 """A robot in this process: its vehicle as the driver has it, and what simulates that, by UDP."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Logs made of motions: as ArduPilot writes them, and as a ground station does."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Flights made by hand: tracks of robots, and what they did when all went as simulated."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Motions by S-curves whose figures are known: what a calibration must find again."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Pipes whose readers sleep, and that take nothing any more: whoever writes to them waits."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """All ways by which something from outside is read, for damaged texts to be tried on."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

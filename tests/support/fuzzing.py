@@ -1,7 +1,5 @@
 """Damages models by bytes, tags and values, and watches what reading them costs."""
 
-from __future__ import annotations
-
 import re
 import signal
 import tracemalloc

@@ -1,7 +1,5 @@
 """A program that speaks to a gateway of the bus as one without Zenoh does: lines of JSON over a socket."""
 
-from __future__ import annotations
-
 import json
 import socket
 import subprocess

@@ -1,7 +1,5 @@
 """Small missions, and the scenes that they become."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.errors import InvalidModelError

@@ -3,8 +3,6 @@
 Sizes of payloads are those that the definitions state for messages without any text or list in them.
 """
 
-from __future__ import annotations
-
 import struct
 
 TEXT, INLINE, MANY = "text", "inline", "many"

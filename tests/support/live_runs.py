@@ -1,7 +1,5 @@
 """Runs in real time, with robots that do each thing for as long as a test says."""
 
-from __future__ import annotations
-
 import threading
 import time
 from dataclasses import replace

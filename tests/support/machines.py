@@ -3,8 +3,6 @@
 It needs root, ``ip`` and ``/dev/net/tun``. Each machine has an address and a monotonic clock of its own.
 """
 
-from __future__ import annotations
-
 import fcntl
 import heapq
 import os

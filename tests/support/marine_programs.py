@@ -1,7 +1,5 @@
 """Behaviours of one underwater vehicle, and what targets are given of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The other side of a link, in the same process: says what a test wants, and answers as it wants."""
 
-from __future__ import annotations
-
 import queue
 import struct
 import threading

@@ -1,7 +1,5 @@
 """Edits of the zoo's metamodel, each with whether models of the zoo as it was still load."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Forms of .ecore files that EMF reads, and files that it calls faulty, each with the files it refers to."""
 
-from __future__ import annotations
-
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES
 
 NAMESPACES = (

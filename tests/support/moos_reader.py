@@ -5,8 +5,6 @@ A file holds lines ``initialize VAR = value`` and blocks ``Behavior = TYPE { nam
 posts its end flags, once. Variables that nobody has posted meet no condition.
 """
 
-from __future__ import annotations
-
 import re
 from math import dist
 

@@ -1,7 +1,5 @@
 """What peers say on an output to which their libraries log, too, before, after and in the same line."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Plans, plug-ins and tables of capabilities of a test run: what was found once is not sought again."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import sys

@@ -1,7 +1,5 @@
 """Ports of this machine for what tests start."""
 
-from __future__ import annotations
-
 import os
 import socket
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Reading code as people write it who know pyecore: each function is a snippet, given the roots of models."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 

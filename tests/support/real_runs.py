@@ -1,7 +1,5 @@
 """Runs of `mmrs run` as processes: orders to them, and what their vehicles and logs show."""
 
-from __future__ import annotations
-
 from math import dist
 
 from fault_table.project import Pad

@@ -1,7 +1,5 @@
 """Resets of simulated autopilots by their watchdog, which no flight on a real firmware has shown."""
 
-from __future__ import annotations
-
 from mmrs_mavlink.sitl import SimulatedVehicle
 
 

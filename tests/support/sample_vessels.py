@@ -1,7 +1,5 @@
 """Vehicles of which tests are made; numbers of thrusters, mounting and buoyancy differ."""
 
-from __future__ import annotations
-
 from math import cos, pi, radians, sin
 from random import Random
 

@@ -1,7 +1,5 @@
 """What all workers of a test run share: a folder, and what is made in it once."""
 
-from __future__ import annotations
-
 import atexit
 import fcntl
 import os

@@ -1,7 +1,5 @@
 """Signals that another thread takes: they do not break off what the main thread waits for."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Callable, Iterator

@@ -3,8 +3,6 @@
 It knows nothing of mappings and rules, so it finds what these forget.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections import Counter

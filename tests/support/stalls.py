@@ -1,7 +1,5 @@
 """How long a machine that stalls has kept this process from running: limits of tests are that much longer."""
 
-from __future__ import annotations
-
 import threading
 import time
 

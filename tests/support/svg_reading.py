@@ -1,7 +1,5 @@
 """What is in a drawing: its elements by class, and what they say for the pointer."""
 
-from __future__ import annotations
-
 from lxml import etree
 
 SVG = "{http://www.w3.org/2000/svg}"

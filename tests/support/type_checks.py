@@ -1,7 +1,5 @@
 """Type checks by mypy, which analyses what all of them use only once in a run of tests."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -3,8 +3,6 @@
 python vcan_pair.py CHANNEL [answers]
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

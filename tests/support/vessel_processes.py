@@ -1,7 +1,5 @@
 """A vehicle as processes on a hub, in real time, and an ear on its bus."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

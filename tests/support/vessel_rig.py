@@ -1,7 +1,5 @@
 """A whole vehicle on one rehearsed bus, and what was said on it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

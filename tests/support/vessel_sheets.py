@@ -1,7 +1,5 @@
 """Underwater vehicles as plain data, for tests of what goes over their buses."""
 
-from __future__ import annotations
-
 from math import cos, pi, sin
 
 from hypothesis import strategies as st

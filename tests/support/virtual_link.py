@@ -4,8 +4,6 @@ It stands for the flight runtime's link and for the radio below it, so that exch
 milliseconds, and the same seed brings the same frames; the vehicle's side is one of our simulated ones.
 """
 
-from __future__ import annotations
-
 import heapq
 import random
 from collections import deque

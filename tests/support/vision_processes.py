@@ -1,7 +1,5 @@
 """The eyes of a vehicle as processes, and a bus that tells them where it is."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Random scenes of which the truth is known, and how detections compare with it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import cos, radians, sin

@@ -1,7 +1,5 @@
 """A behaviour in which two robots wait for each other, as a file."""
 
-from __future__ import annotations
-
 PAIR = """<?xml version="1.0" encoding="UTF-8"?>
 <bl:Behaviour xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
     xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:bl="urn:mmrs:behaviour:1.0" name="pair">

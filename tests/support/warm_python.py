@@ -6,8 +6,6 @@ environment, files and signals of its caller, ends as a process of its own does,
 is. `FREEZE` and `THAW` do to it what SIGSTOP and SIGCONT would do.
 """
 
-from __future__ import annotations
-
 import atexit
 import contextlib
 import gc

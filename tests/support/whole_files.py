@@ -4,8 +4,6 @@ Each worker lists the files, but imports only those that it runs: all workers to
 The files of one group run in one worker; those in real time come first, then those that take long.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from functools import cache

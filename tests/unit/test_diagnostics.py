@@ -1,7 +1,5 @@
 """The order in which faults are told."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 from hypothesis import given

@@ -1,7 +1,5 @@
 """A vehicle gives its dive up when a message on its bus has two senders, whoever they are."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise

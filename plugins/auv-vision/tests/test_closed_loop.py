@@ -1,7 +1,5 @@
 """A whole vehicle that goes by what it sees: cameras, control layer and body in simulated time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What is detected in pictures whose truth is known: how much of it, how exactly, how surely."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from statistics import median
 

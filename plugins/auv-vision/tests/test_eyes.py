@@ -1,7 +1,5 @@
 """What the decision centre takes of what cameras tell."""
 
-from __future__ import annotations
-
 import json
 import socket
 import time

@@ -1,7 +1,5 @@
 """What the eyes of a simulated vehicle tell, from picture to place."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Pairs of pictures in shared memory, between processes that are killed and begin again."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

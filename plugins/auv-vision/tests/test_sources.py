@@ -1,7 +1,5 @@
 """Films and cameras in the place of simulated pictures, and what is said of those that will not do."""
 
-from __future__ import annotations
-
 import threading
 import time
 from pathlib import Path

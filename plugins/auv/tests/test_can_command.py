@@ -1,7 +1,5 @@
 """``mmrs can`` as people call it."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Names that nobody reads are refused: of a sheet, of its `extra`, of a Doppler log."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

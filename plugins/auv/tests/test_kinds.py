@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 from mmrs_auv.kinds import ATMOSPHERE, AUV_KIND, GRAVITY, kinematics, largest_depth
 from mmrs_auv.names import AUV_MOVEMENT

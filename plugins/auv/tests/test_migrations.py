@@ -1,7 +1,5 @@
 """Vehicles whose movements hold their thrusters become vehicles that hold each of them once."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

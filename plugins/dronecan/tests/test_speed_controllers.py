@@ -1,7 +1,5 @@
 """Thrust to DroneCAN's messages and back, with the package's own transport as the other side."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

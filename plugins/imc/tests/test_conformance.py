@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from mmrs_imc import plugin
 
 from mmrs_core.testing.conformance import PluginConformance, TargetConformance

@@ -1,7 +1,5 @@
 """The laws that every plug-in must keep."""
 
-from __future__ import annotations
-
 from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
 
 from mmrs_core.scene import Device, DeviceAction

@@ -1,7 +1,5 @@
 """What holds of devices that are wired to an autopilot."""
 
-from __future__ import annotations
-
 from mmrs_core.languages import robot
 from mmrs_core.testing.conformance import Case, ConstraintConformance
 from mmrs_mavlink import plugin

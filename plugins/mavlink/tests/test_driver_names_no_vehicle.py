@@ -1,7 +1,5 @@
 """The driver goes by vehicle profiles alone: it compares with no name of a vehicle or an autopilot."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

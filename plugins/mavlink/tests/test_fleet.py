@@ -1,7 +1,5 @@
 """The simulated fleet of a mission."""
 
-from __future__ import annotations
-
 import re
 from shutil import copytree
 

@@ -1,7 +1,5 @@
 """Faults on a schedule, and by typed lines."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_mavlink.commands.rehearsal import Schedule, ScheduledFault, obey, scheduled

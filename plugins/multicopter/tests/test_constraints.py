@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 from mmrs_multicopter import plugin
 from mmrs_multicopter.constraints import CONSTRAINTS

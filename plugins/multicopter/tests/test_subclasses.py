@@ -1,7 +1,5 @@
 """Another plug-in gives its own flying robots take-offs and landings by subclassing those of multicopters."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from dataclasses import replace

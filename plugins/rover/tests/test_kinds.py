@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from math import atan2, cos, degrees, dist, hypot, pi, sin
 
 import pytest

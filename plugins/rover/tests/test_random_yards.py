@@ -1,7 +1,5 @@
 """Rovers among random terrain, from the scene to the end of the run."""
 
-from __future__ import annotations
-
 from math import dist
 
 import pytest

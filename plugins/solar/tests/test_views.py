@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from math import acos, atan2, cos, degrees, dist, hypot, radians, sin
 
 import pytest

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 from mmrs_survey.camera import Footprint, footprint_at, footprint_of
 

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from mmrs_survey import plugin
 
 from mmrs_core.scene import Part

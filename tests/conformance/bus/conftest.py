@@ -1,7 +1,5 @@
 """Robots on a bus, in one process or in many, over each carrier; every test runs on all of them."""
 
-from __future__ import annotations
-
 import subprocess
 import threading
 import time

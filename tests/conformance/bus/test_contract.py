@@ -1,7 +1,5 @@
 """What every bus keeps, whatever carries it and whatever happens to the robots."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

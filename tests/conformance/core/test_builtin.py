@@ -1,7 +1,5 @@
 """The core's own contributions keep the laws that plug-ins must keep."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from mmrs_core import builtin

@@ -1,7 +1,5 @@
 """Eclipse EMF as a referee: a small Java program of ours around the libraries."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import threading

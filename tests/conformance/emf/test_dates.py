@@ -1,7 +1,5 @@
 """Dates, as EMF reads them on machines in two time zones, and as we do."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Forms of .ecore files that EMF reads: ours say the same of each; what EMF calls a fault is refused."""
 
-from __future__ import annotations
-
 import pytest
 from emf_description import metamodel_lines, name
 from metamodel_forms import FORMS, NAMESPACES, REFUSED, classed, packaged, reference

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 from emf_description import metamodel_lines
 from pyecore import ecore

@@ -1,7 +1,5 @@
 """Models that we write, and EMF reads and writes again."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

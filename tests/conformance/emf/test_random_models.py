@@ -1,7 +1,5 @@
 """Random models, made by EMF for us and by us for EMF."""
 
-from __future__ import annotations
-
 import shutil
 from collections import Counter
 from functools import cache

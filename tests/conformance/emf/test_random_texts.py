@@ -1,7 +1,5 @@
 """Random texts as values: what EMF reads as which, and what it refuses."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from pathlib import Path

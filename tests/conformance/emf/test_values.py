@@ -1,7 +1,5 @@
 """Texts of values, as EMF reads them and as we do."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from decimal import Decimal
 from pathlib import Path

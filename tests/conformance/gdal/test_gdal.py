@@ -1,7 +1,5 @@
 """GDAL, which QGIS and many others read with, opens what is written, and what it writes is read."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

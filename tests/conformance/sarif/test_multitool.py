@@ -1,7 +1,5 @@
 """The validator of SARIF's authors takes our logs, by the format's rules and those of code scanning."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

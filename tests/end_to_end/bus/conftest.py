@@ -1,7 +1,5 @@
 """Ends of the bus in this process, over Zenoh on loopback, with and without certificates."""
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What people are told of peers that cannot be reached."""
 
-from __future__ import annotations
-
 import shutil
 from datetime import UTC, datetime, timedelta
 

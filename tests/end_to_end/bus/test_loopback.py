@@ -1,7 +1,5 @@
 """Without keys and addresses: processes of one computer meet, and are not reached from others."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from ipaddress import ip_address
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Peers on a machine whose only interface is loopback: those that only connect meet, too."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

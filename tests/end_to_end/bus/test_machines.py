@@ -1,7 +1,5 @@
 """Robots on machines of their own: each has an address and a clock, and the network between them fails."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

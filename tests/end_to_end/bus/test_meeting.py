@@ -1,7 +1,5 @@
 """Beginning together: nobody begins before all are ready, and then all at one instant."""
 
-from __future__ import annotations
-
 import threading
 import time
 

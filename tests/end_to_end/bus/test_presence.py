@@ -1,7 +1,5 @@
 """Who is there: a robot that is killed, frozen or has ended is noticed, and how soon."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Revoked keys: processes that run refuse them as soon as the authority's list says so."""
 
-from __future__ import annotations
-
 import shutil
 from datetime import UTC, datetime
 

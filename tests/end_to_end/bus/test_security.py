@@ -1,7 +1,5 @@
 """The bus with certificates: who has none is not heard, and nobody speaks for another."""
 
-from __future__ import annotations
-
 import json
 import socket
 import stat

@@ -1,7 +1,5 @@
 """Nothing that comes over the network, and no disk, deafens a robot for good."""
 
-from __future__ import annotations
-
 import json
 import time
 

@@ -1,7 +1,5 @@
 """Models of any language: shown, queried, converted, compared and validated from the command line."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What bars some robots only is known wherever a behaviour is read with its place."""
 
-from __future__ import annotations
-
 import json
 import shutil
 

@@ -1,7 +1,5 @@
 """What is converted into another folder can be read there."""
 
-from __future__ import annotations
-
 import shutil
 
 import pytest

@@ -1,7 +1,5 @@
 """A robot whose kind's plug-in is missing, and what ``mmrs diff`` says of what it cannot understand."""
 
-from __future__ import annotations
-
 import shutil
 
 import pytest

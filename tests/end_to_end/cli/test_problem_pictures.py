@@ -1,7 +1,5 @@
 """A mission that is not valid, or has no plan, is drawn with its problems at their positions."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

@@ -1,7 +1,5 @@
 """What ``mmrs show`` says of values of every type, and of files with several roots."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A file that cannot be read at all is a fault like others, told together with those of the other files."""
 
-from __future__ import annotations
-
 import json
 import shutil
 

@@ -1,7 +1,5 @@
 """Generated controllers as processes, and simulated vehicles for them."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Flights from one side of the 180th meridian to the other."""
 
-from __future__ import annotations
-
 import pytest
 from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 

@@ -1,7 +1,5 @@
 """Charging, and batteries that say nothing."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Robots as separate programs, which keep their slots by Zenoh."""
 
-from __future__ import annotations
-
 import json
 import signal
 import subprocess

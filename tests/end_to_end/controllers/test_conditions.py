@@ -1,7 +1,5 @@
 """Standard conditions in generated controllers: nobody writes them, and robots wait for what they ask."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

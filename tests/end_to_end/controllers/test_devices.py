@@ -1,7 +1,5 @@
 """Wirings of devices: the commands that a simulated vehicle gets from a generated controller."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

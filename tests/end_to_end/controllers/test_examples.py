@@ -1,7 +1,5 @@
 """The examples' controllers: made from the models, run, and judged by the replayer."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import pytest

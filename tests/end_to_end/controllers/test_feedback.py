@@ -1,7 +1,5 @@
 """What robots report is read at a ground station that looks on, and told to who asks how they are."""
 
-from __future__ import annotations
-
 import socket
 from contextlib import suppress
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The fence of a vehicle keeps the distances that its mission asks for."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Links that end, that lose what is sent, and that carry noise."""
 
-from __future__ import annotations
-
 import socket
 import threading
 from contextlib import ExitStack, contextmanager

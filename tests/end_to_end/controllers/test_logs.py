@@ -1,7 +1,5 @@
 """Logs that cannot be written, and what a dry run may say that it has measured."""
 
-from __future__ import annotations
-
 import resource
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """What a vehicle is told to do by itself when it no longer hears the ground."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 

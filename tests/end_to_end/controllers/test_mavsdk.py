@@ -1,7 +1,5 @@
 """The upload and command path against a peer that is not ours: MAVSDK."""
 
-from __future__ import annotations
-
 import queue
 import subprocess
 import sys

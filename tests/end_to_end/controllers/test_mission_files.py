@@ -1,7 +1,5 @@
 """Missions in files against a peer that is not ours: MAVSDK imports them, and a vehicle keeps them."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Others move a robot's mission on, or back, or replace it: nobody has checked where that leads."""
 
-from __future__ import annotations
-
 import threading
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Orders of people, obeyed and confirmed by the robots; the fault table gives each in every state."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 

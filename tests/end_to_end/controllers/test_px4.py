@@ -1,7 +1,5 @@
 """Generated controllers with a simulated vehicle that behaves as PX4's documents say."""
 
-from __future__ import annotations
-
 from math import dist
 
 import pytest

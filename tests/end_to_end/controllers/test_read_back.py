@@ -1,7 +1,5 @@
 """What a vehicle has kept of an upload, and which differences are none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Programs that go on after a break: with another battery, in another process, or in the same one."""
 
-from __future__ import annotations
-
 import signal
 import time
 from dataclasses import replace

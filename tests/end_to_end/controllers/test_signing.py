@@ -1,7 +1,5 @@
 """Signed links: who has no key commands nobody, and is not believed."""
 
-from __future__ import annotations
-
 import pytest
 from mmrs_multicopter.testing import LAND, robot_program, take_off
 

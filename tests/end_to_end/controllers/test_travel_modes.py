@@ -1,7 +1,5 @@
 """Travel modes on simulated vehicles: what is set up before take-off, and what is left to the owner."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The shipped examples, taken through every stage once for all tests."""
 
-from __future__ import annotations
-
 from functools import cache, cached_property
 
 import pytest

@@ -1,7 +1,5 @@
 """Examples in every format of map programs, read back: shapes to a centimetre, all photos, times in order."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

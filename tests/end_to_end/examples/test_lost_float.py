@@ -1,7 +1,5 @@
 """A drone finds, an underwater vehicle goes and looks: both in simulated time, over one bus."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from math import hypot

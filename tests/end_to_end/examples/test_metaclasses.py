@@ -1,7 +1,5 @@
 """Which example uses which metaclass: a table, kept current in the examples' README."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.element import descendants, metaclass_of

@@ -1,7 +1,5 @@
 """Mistakes that an operator might make in an example, and what he is told."""
 
-from __future__ import annotations
-
 import shutil
 
 import pytest

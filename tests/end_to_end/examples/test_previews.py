@@ -1,7 +1,5 @@
 """The examples are drawn whole: every way, every stay, every choice, and what plug-ins know of the place."""
 
-from __future__ import annotations
-
 import pytest
 from lxml import etree
 

@@ -1,7 +1,5 @@
 """What a rover does on ground that it shares with a drone that flies over it."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from itertools import pairwise

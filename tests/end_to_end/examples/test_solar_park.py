@@ -1,7 +1,5 @@
 """What drones do in a solar park: rows seen squarely and sharply, in enough sunlight."""
 
-from __future__ import annotations
-
 import shutil
 from itertools import pairwise
 from math import atan2, cos, degrees, dist, radians, sin

@@ -1,7 +1,5 @@
 """A stranger's context elements are read, planned around, and drawn without any change to the core."""
 
-from __future__ import annotations
-
 import shutil
 
 import pytest

@@ -1,7 +1,5 @@
 """The examples of underwater vehicles, checked, and dived by simulated vehicles with their control layer."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 from math import dist

@@ -6,8 +6,6 @@ carrying on; at different moments of the flight. Rows fly together, each with a 
 flies twice.
 """
 
-from __future__ import annotations
-
 from typing import get_args
 
 import pytest

@@ -3,8 +3,6 @@
 Both executions share what does this; each is flown all the same in the thorough profile.
 """
 
-from __future__ import annotations
-
 import time
 from contextlib import ExitStack
 

@@ -1,7 +1,5 @@
 """Orders over links on which everything takes its time: no request of ours is a pilot's."""
 
-from __future__ import annotations
-
 import threading
 
 import pytest

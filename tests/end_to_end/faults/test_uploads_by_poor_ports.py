@@ -1,7 +1,5 @@
 """Missions, fences and rally points by ports that are slow or old, in both executions."""
 
-from __future__ import annotations
-
 import pytest
 from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import Pad

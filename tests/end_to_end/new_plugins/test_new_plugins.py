@@ -1,7 +1,5 @@
 """New plug-ins as their authors meet them: written, installed by pip, tested, and used by every command."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """A behaviour with the logs and black boxes of a simulated run of it."""
 
-from __future__ import annotations
-
 import shutil
 
 import pytest

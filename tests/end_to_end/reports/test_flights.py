@@ -1,7 +1,5 @@
 """Reports of flights of generated controllers with simulated vehicles."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Reports of simulated runs, from models to the page."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from html.parser import HTMLParser

@@ -1,7 +1,5 @@
 """Long flights are reported in time, and in memory that their length does not fill."""
 
-from __future__ import annotations
-
 import json
 import resource
 import subprocess

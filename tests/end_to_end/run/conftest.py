@@ -1,7 +1,5 @@
 """Projects with simulated vehicles, and `mmrs run` for them."""
 
-from __future__ import annotations
-
 import pytest
 from fault_table.fleet import Fleet
 

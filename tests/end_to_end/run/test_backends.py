@@ -1,7 +1,5 @@
 """The backend mavlink by itself, with a simulated vehicle: what it tells, and what it watches for."""
 
-from __future__ import annotations
-
 import json
 from contextlib import contextmanager
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """`mmrs run` as a process waits for robots whose batteries are changed."""
 
-from __future__ import annotations
-
 import pytest
 from fault_table.project import Pad
 from patience import wait_for

@@ -1,7 +1,5 @@
 """The mission of the paper, carried out by `mmrs run` with three simulated vehicles."""
 
-from __future__ import annotations
-
 import pytest
 from example_flight.fleets import Ours
 from example_flight.mission import SLACK, Mission

@@ -1,7 +1,5 @@
 """Programs that land away from home and go on from there, with another battery or in another process."""
 
-from __future__ import annotations
-
 import json
 import re
 import signal

@@ -1,7 +1,5 @@
 """`mmrs run` as a process obeys orders and interrupts."""
 
-from __future__ import annotations
-
 import json
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Choices that ask the operator, under `mmrs run` with vehicles."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 

@@ -1,7 +1,5 @@
 """`mmrs run --resume` goes on where a run was broken off."""
 
-from __future__ import annotations
-
 import signal
 from math import dist
 

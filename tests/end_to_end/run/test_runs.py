@@ -1,7 +1,5 @@
 """`mmrs run` as a process: missions, what it says, several processes, and what it refuses."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Example (a), flown by three vehicles of every sort there is, in both ways."""
 
-from __future__ import annotations
-
 import pytest
 from example_flight.fleets import FLEETS
 from example_flight.mission import SLACK, Mission

@@ -1,7 +1,5 @@
 """What starts ArduPilot's simulation and records it, with a stand-in for the binary that is ours."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from math import hypot

@@ -1,7 +1,5 @@
 """Small missions on vehicles whose services are MAVSDK's."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

@@ -1,7 +1,5 @@
 """Generated controllers on our vehicles that behave as PX4's documentation says."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

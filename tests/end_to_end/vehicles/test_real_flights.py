@@ -1,7 +1,5 @@
 """The harness of flights on real firmware, with a stand-in for the firmware that is ours."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """`mmrs sitl` as users start it."""
 
-from __future__ import annotations
-
 import json
 import shlex
 import signal

@@ -1,7 +1,5 @@
 """Decision centres in Ada, compiled with warnings as errors, on the bus of a simulated vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What decision centres in Ada do when something goes wrong: in real time, on a simulated vehicle's bus."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor

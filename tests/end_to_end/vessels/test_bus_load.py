@@ -1,7 +1,5 @@
 """What the parts of a vehicle say is what the database declares: as often as that, and no more."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 import pytest

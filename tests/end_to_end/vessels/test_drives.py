@@ -1,7 +1,5 @@
 """A vehicle whose drives are the generated ones in C, as a program on its bus."""
 
-from __future__ import annotations
-
 import subprocess
 import time
 from itertools import pairwise

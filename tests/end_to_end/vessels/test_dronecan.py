@@ -1,7 +1,5 @@
 """A vehicle whose thrusters speak DroneCAN goes where it is to go, and stops when it is to stop."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Sequence
 from math import copysign, dist, sqrt

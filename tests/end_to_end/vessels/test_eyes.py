@@ -1,7 +1,5 @@
 """The eyes of a vehicle as three processes: a bus tells them where they are, they tell what they see."""
 
-from __future__ import annotations
-
 import sys
 import time
 from dataclasses import replace

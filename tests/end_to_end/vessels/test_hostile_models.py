@@ -1,7 +1,5 @@
 """A database is written for what a bus can carry, and for nothing else; models say where it is wrong."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from shutil import copytree
 

@@ -1,7 +1,5 @@
 """A drone finds, an underwater vehicle goes and looks, in real time, as people start them."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

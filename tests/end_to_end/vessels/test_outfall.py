@@ -1,7 +1,5 @@
 """The example outfall, from its mission to files that are read back."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A vehicle as processes on a hub, in real time: it goes, and stops when a part or the bus fails."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 

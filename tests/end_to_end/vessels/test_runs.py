@@ -1,7 +1,5 @@
 """A simulated vehicle in real time, each part a process, driven by the engine and by generated code."""
 
-from __future__ import annotations
-
 import json
 import time
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Dives by what the processes of a vehicle's eyes tell: it approaches, faces and chooses by what is seen."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Simulated vehicles to which happens what is typed."""
 
-from __future__ import annotations
-
 import os
 import queue
 import signal

@@ -6,8 +6,6 @@ package ``linux-image-VERSION-amd64`` of Debian's that ``dpkg -x`` has unpacked 
 computer's own files. It is emulated, so that it needs no rights and runs inside of other virtual machines.
 """
 
-from __future__ import annotations
-
 import lzma
 import os
 import re

@@ -1,7 +1,5 @@
 """Generated files, word for word; other tests run them and have peers read them."""
 
-from __future__ import annotations
-
 import ast
 import json
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What holds of every run of every behaviour."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import dist
 

@@ -1,7 +1,5 @@
 """No word of another run, plan or sender, nor one from an impossible time, changes or learns anything."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from typing import Any

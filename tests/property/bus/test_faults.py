@@ -1,7 +1,5 @@
 """Whatever happens to messages and processes, the logs together tell a possible story, to its end."""
 
-from __future__ import annotations
-
 from random import Random
 
 from bus_world import World, spoil

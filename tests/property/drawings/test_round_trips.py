@@ -1,7 +1,5 @@
 """What is written in formats is read again: shapes to a centimetre, and all that is said of them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import warnings

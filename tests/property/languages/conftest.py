@@ -1,7 +1,5 @@
 """Metamodels that random models are made of."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

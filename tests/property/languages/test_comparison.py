@@ -1,7 +1,5 @@
 """Two models have no changes between them if and only if they are written alike."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st

@@ -1,7 +1,5 @@
 """Compiled readers and writers do what the careful ones do, faults and messages included."""
 
-from __future__ import annotations
-
 import re
 from contextlib import contextmanager
 

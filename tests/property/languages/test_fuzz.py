@@ -1,7 +1,5 @@
 """Damaged models of every kind are refused or have faults; they never break us, hang, or fill the memory."""
 
-from __future__ import annotations
-
 import pytest
 from fuzz_ways import ways
 from fuzzing import HangError, Way, fuzz, in_time

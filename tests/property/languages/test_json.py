@@ -1,7 +1,5 @@
 """Models survive the way to JSON and back with every bit."""
 
-from __future__ import annotations
-
 from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st

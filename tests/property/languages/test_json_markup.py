@@ -1,7 +1,5 @@
 """Laws of places in JSON texts: what stands there is what the text says there."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

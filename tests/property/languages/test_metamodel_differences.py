@@ -1,7 +1,5 @@
 """Where a comparison of metamodels says that old models load, they do."""
 
-from __future__ import annotations
-
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from metamodel_edits import EDITS, ZOO, edited

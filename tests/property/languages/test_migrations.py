@@ -1,7 +1,5 @@
 """Random models of an older version say after migration what they said before, by the newer names."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

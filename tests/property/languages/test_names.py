@@ -1,7 +1,5 @@
 """What is written by name says the same as what is written by path."""
 
-from __future__ import annotations
-
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

@@ -1,7 +1,5 @@
 """Texts of any kind as values of any type."""
 
-from __future__ import annotations
-
 from datetime import datetime, timedelta, timezone
 
 import pytest

@@ -1,7 +1,5 @@
 """Whatever a client of the control channel sends, it is answered in JSON, and the channel goes on."""
 
-from __future__ import annotations
-
 import json
 import socket
 

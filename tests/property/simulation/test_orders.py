@@ -1,7 +1,5 @@
 """Orders in any sequence, among faults, doubts and ends: each is answered, once, and by what is true."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from math import inf
 

@@ -1,7 +1,5 @@
 """Random instances are valid, and reach all that a metamodel allows."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -4,8 +4,6 @@ Each is a context manager; inside, `links` gives the arguments that reach its ve
 `tracks` holds what each did: seconds, metres north, east and up of home.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

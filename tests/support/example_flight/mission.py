@@ -1,7 +1,5 @@
 """The mission, its behaviour, and how near to areas a track may come."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The two ways to fly it: generated controllers as separate programs, and `mmrs run`."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path

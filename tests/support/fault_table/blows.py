@@ -1,7 +1,5 @@
 """The part of the fault table about what happens to the process, and so to all of its robots at once."""
 
-from __future__ import annotations
-
 import signal
 import threading
 import time

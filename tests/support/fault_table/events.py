@@ -1,7 +1,5 @@
 """The part of the fault table about what befalls a vehicle, or what it tells of itself."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from resets import reset

@@ -1,7 +1,5 @@
 """The part of the fault table about several processes, one after the other or at the same time."""
 
-from __future__ import annotations
-
 import json
 import signal
 import time

@@ -1,7 +1,5 @@
 """The part of the fault table about links that are lost."""
 
-from __future__ import annotations
-
 from fault_table import strikes
 from fault_table.row import AT, AUTO, LEG, Row, answered_rows, policy
 

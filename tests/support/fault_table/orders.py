@@ -1,7 +1,5 @@
 """The part of the fault table about orders: every order, from every state, to one robot and to all."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from fault_table.row import Row, leave_alone

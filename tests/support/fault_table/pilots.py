@@ -1,7 +1,5 @@
 """The part of the fault table about pilots who take their vehicle over: hands off, whatever else is wrong."""
 
-from __future__ import annotations
-
 from fault_table import strikes
 from fault_table.row import AT, AUTO, LEG, Row, policy
 

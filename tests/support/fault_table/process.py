@@ -1,7 +1,5 @@
 """A process that flies robots: what it says, how it is told to end, and how it ends."""
 
-from __future__ import annotations
-
 import subprocess
 import threading
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A project on disk in which every robot has a pad of its own, with a meadow for emergencies beside it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import atan2, degrees, hypot

@@ -1,7 +1,5 @@
 """What a vehicle did, by its own record: how it ended, how fast it answered, in words."""
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A row of the fault table: what is declared and what goes wrong; and what became of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any

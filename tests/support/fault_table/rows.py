@@ -1,7 +1,5 @@
 """The fault table: every fault of one vehicle, with at least two policies each."""
 
-from __future__ import annotations
-
 from fault_table import strikes
 from fault_table.events import event_rows, landing_rows, own_failsafe_rows
 from fault_table.links import link_rows

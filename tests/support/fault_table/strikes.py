@@ -1,7 +1,5 @@
 """What goes wrong with a vehicle."""
 
-from __future__ import annotations
-
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import SimulatedVehicle

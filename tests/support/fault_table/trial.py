@@ -1,7 +1,5 @@
 """Flies rows of the fault table, all at once, and says what became of them."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable, Sequence
 from pathlib import Path

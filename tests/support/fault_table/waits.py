@@ -1,7 +1,5 @@
 """The part of the fault table about devices and other robots that do not answer."""
 
-from __future__ import annotations
-
 from fault_table import strikes
 from fault_table.links import SILENCE
 from fault_table.row import AT, LEG, Row, answered_rows, leave_alone, policy

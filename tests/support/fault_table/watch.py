@@ -1,7 +1,5 @@
 """Follows one vehicle: strikes when it is time, sees where it comes to rest, and judges it."""
 
-from __future__ import annotations
-
 import json
 import threading
 from collections.abc import Callable, Mapping, Sequence

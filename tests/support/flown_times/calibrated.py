@@ -1,7 +1,5 @@
 """Logs of recorded flights, and their models with figures that `mmrs calibrate` finds in some of these."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 import json

@@ -1,7 +1,5 @@
 """The vehicle's clock by that of the log, which runs ahead where a simulation falls behind."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf

@@ -1,7 +1,5 @@
 """One robot of a recorded flight: what it was planned, and checked, to take, and what it took."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

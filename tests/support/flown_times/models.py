@@ -1,7 +1,5 @@
 """Models of a recorded flight, and how long a robot of it is planned to take."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial

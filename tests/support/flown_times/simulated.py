@@ -1,7 +1,5 @@
 """Flies the models of a flight on simulated vehicles, and records that as flights of real ones are."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Callable
 from pathlib import Path

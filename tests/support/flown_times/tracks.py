@@ -1,7 +1,5 @@
 """Tracks of vehicles: where each was by its own estimate, and what that shows."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """A simulated vehicle without wires: its time passes when a test says so."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink

@@ -1,7 +1,5 @@
 """A ground station of a simulated vehicle: the time of the vehicle passes while the station waits."""
 
-from __future__ import annotations
-
 import socket
 from collections import deque
 

@@ -1,7 +1,5 @@
 """Behaviours as scenes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

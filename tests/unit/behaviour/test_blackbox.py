@@ -1,7 +1,5 @@
 """What is left of a black box is read, and what is not is told."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

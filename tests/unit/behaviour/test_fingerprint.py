@@ -1,7 +1,5 @@
 """What tells one plan of a mission from another."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from mmrs_multicopter.testing import two_drones

@@ -1,7 +1,5 @@
 """Logs are read as files, and every line that is no step has its place."""
 
-from __future__ import annotations
-
 from queue import SimpleQueue
 
 import pytest

@@ -1,7 +1,5 @@
 """Where robots come down when all of them have to at once."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import combinations
 from math import dist

@@ -1,7 +1,5 @@
 """From behaviour models to programs."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest

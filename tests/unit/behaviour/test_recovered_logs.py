@@ -1,7 +1,5 @@
 """What is left of a damaged log is read for people."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The judge of logs: it accepts what the rules allow, and nothing that was tampered with."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The step rules."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

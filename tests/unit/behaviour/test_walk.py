@@ -1,7 +1,5 @@
 """Moves as a graph."""
 
-from __future__ import annotations
-
 from mmrs_core.behaviour.walk import (
     components,
     in_order,

@@ -1,7 +1,5 @@
 """Models that are converted together refer to each other as before, and all are written or none."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

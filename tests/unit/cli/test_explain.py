@@ -1,7 +1,5 @@
 """``mmrs-gen``, ``mmrs-gen explain`` and templates of one's own, as a user types them."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``mmrs validate --fix`` changes all that it showed, or nothing."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

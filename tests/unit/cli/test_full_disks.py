@@ -1,7 +1,5 @@
 """What cannot be written to the end is named: a full disk says of itself only that it is full."""
 
-from __future__ import annotations
-
 import errno
 import os
 import sys

@@ -1,7 +1,5 @@
 """Numbers longer than Python reads, and nesting deeper than it goes, are refused in plain words."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.behaviour.box_files import black_boxes

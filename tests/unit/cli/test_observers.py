@@ -1,7 +1,5 @@
 """What `mmrs run` remembers of its robots, for who asks how they are."""
 
-from __future__ import annotations
-
 from contextlib import contextmanager
 from dataclasses import replace
 from threading import Event

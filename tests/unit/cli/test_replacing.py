@@ -1,7 +1,5 @@
 """Several files are replaced together, or nothing is: whichever step fails, all is as it was."""
 
-from __future__ import annotations
-
 import errno
 import os
 import signal

@@ -1,7 +1,5 @@
 """Which folders a run may be gone on with in."""
 
-from __future__ import annotations
-
 import pytest
 import typer
 from mmrs_multicopter.testing import two_drones

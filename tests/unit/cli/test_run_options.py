@@ -1,7 +1,5 @@
 """The command line of ``mmrs run``: what makes no sense is wrong usage."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

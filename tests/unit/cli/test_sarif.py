@@ -1,7 +1,5 @@
 """SARIF logs say what the diagnostics say, in the places where editors look for it."""
 
-from __future__ import annotations
-
 import json
 from importlib.resources import files
 from pathlib import Path

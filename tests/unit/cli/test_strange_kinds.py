@@ -1,7 +1,5 @@
 """A plug-in's robot that flies, but names no vehicle, is refused by the name of its kind."""
 
-from __future__ import annotations
-
 import shutil
 from dataclasses import replace
 from pathlib import Path

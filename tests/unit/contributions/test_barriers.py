@@ -1,7 +1,5 @@
 """Areas that elements of a context are to some robots and not to others."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

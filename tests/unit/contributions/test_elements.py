@@ -1,7 +1,5 @@
 """Context elements of plug-ins reach planning, checks and simulation alike."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The tables of capabilities hold every element of the Behaviour Language, and are true."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

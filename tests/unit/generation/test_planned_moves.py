@@ -1,7 +1,5 @@
 """Where planned moves lead, and how long they take, as targets learn it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

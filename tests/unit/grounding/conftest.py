@@ -1,7 +1,5 @@
 """A language with a task and a context element of each sort."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.registry import MetamodelSource, registry_with

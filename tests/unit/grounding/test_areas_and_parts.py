@@ -1,7 +1,5 @@
 """The place of a scene, and elements as plain data."""
 
-from __future__ import annotations
-
 from math import inf
 
 import pytest

@@ -1,7 +1,5 @@
 """Latitudes and longitudes in metres east and north."""
 
-from __future__ import annotations
-
 from math import hypot
 
 import pytest

@@ -1,7 +1,5 @@
 """Where a mission's origin is, and from where heights count."""
 
-from __future__ import annotations
-
 import pytest
 from grounded import faults, geo, point_of, scene, simple
 

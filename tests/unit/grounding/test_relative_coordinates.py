@@ -1,7 +1,5 @@
 """Coordinates in metres from another place."""
 
-from __future__ import annotations
-
 import pytest
 from grounded import faults, geo, point_of, relative, scene, simple
 

@@ -1,7 +1,5 @@
 """Robots of a scene, and their types."""
 
-from __future__ import annotations
-
 import pytest
 from grounded import faults, geo, quad, scene, simple
 

@@ -1,7 +1,5 @@
 """Tasks of a scene, what depends on what, and what the mission says of all."""
 
-from __future__ import annotations
-
 from grounded import faults, geo, scene, simple
 
 from mmrs_core.languages import mission, robot

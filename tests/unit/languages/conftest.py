@@ -1,7 +1,5 @@
 """Registries and shorthands for tests of models."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """What differs between two models is told as people would tell it."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.comparison.changes import changes_between

@@ -1,7 +1,5 @@
 """The odd one out after many of a kind, for which reader and writer have compiled a function by then."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.errors import UnreadableError

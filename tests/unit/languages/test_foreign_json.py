@@ -1,7 +1,5 @@
 """Models in JSON of a language that lies beside them."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """Where a model says that its metamodel lies may be anything."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.foreign import read_any

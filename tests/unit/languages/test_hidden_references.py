@@ -1,7 +1,5 @@
 """References into elements of languages that are not installed are kept, and never written wrong."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.element import Hidden, path_of, root_of

@@ -1,7 +1,5 @@
 """What Eclipse writes into files beyond plain values, read and written back as it stands."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 from pathlib import Path
 

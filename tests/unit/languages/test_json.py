@@ -1,7 +1,5 @@
 """Models as JSON: every value as it is in XMI, every fault with its line."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

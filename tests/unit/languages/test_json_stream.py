@@ -1,7 +1,5 @@
 """JSON is read member by member: in whatever order they come, and in little memory."""
 
-from __future__ import annotations
-
 import json
 import tracemalloc
 

@@ -1,7 +1,5 @@
 """What pyecore has of metamodels that it would not read, or not read rightly, by itself."""
 
-from __future__ import annotations
-
 import gc
 import subprocess
 import sys

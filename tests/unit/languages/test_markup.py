@@ -1,7 +1,5 @@
 """Every part of a text is found where it stands."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

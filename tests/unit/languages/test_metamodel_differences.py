@@ -1,7 +1,5 @@
 """Two versions of a metamodel: what changed, and whether old models still load."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

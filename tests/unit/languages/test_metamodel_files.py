@@ -1,7 +1,5 @@
 """Metamodels that are files of the user's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Forms of .ecore files that tools write, and what hostile ones run into."""
 
-from __future__ import annotations
-
 import tracemalloc
 from pathlib import Path
 

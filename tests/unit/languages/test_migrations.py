@@ -1,7 +1,5 @@
 """Models of older versions are migrated while they are read."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.errors import PluginError

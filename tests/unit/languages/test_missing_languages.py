@@ -1,7 +1,5 @@
 """Models with elements of languages that are not installed open, say so, and are saved as they were."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """References by name: what a name leads to, how it is written, and what is said of one that leads nowhere."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.element import Hidden

@@ -1,7 +1,5 @@
 """Models that name addresses of the network, which nobody may call."""
 
-from __future__ import annotations
-
 import threading
 import urllib.request
 from http.server import BaseHTTPRequestHandler, HTTPServer

@@ -1,7 +1,5 @@
 """pyecore's ``ResourceSet`` reads and writes by our reader and writer."""
 
-from __future__ import annotations
-
 import re
 from io import BytesIO, StringIO
 from pathlib import Path

@@ -1,7 +1,5 @@
 """pyecoregen makes Python modules of the languages, as of any metamodel that pyecore has."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Paths lead to elements and values, or say where they break."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.query.search import NothingFoundError, find

@@ -1,7 +1,5 @@
 """Models that refer to classes and types: of Ecore itself, of what is installed, of .ecore files."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.conformance import check_conformance

@@ -1,7 +1,5 @@
 """Elements answer what pyecore's objects answer, to those who read them with pyecore's API."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

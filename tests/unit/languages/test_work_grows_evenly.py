@@ -1,7 +1,5 @@
 """What takes its time for a small model must not take the square of it for a large one."""
 
-from __future__ import annotations
-
 import gc
 import tracemalloc
 from time import process_time

@@ -1,7 +1,5 @@
 """Callers of a server: the silent go, and block none that has something to say."""
 
-from __future__ import annotations
-
 import socket
 import threading
 from contextlib import ExitStack

@@ -1,7 +1,5 @@
 """The control channel: who is heard, and what is answered."""
 
-from __future__ import annotations
-
 import json
 import os
 import socket

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from math import inf
 
 from mmrs_runtime.engine.event_queue import EventQueue

@@ -1,7 +1,5 @@
 """Interrupts of a process that stop its robots."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections import deque

@@ -1,7 +1,5 @@
 """Whole lines of logs, whatever a break has left behind them."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_runtime.faults import FaultError

@@ -1,7 +1,5 @@
 """Which response a fault gets."""
 
-from __future__ import annotations
-
 from math import inf
 
 from mmrs_runtime.policies import Policy, in_precedence, patience, response_to, seconds_of

@@ -1,7 +1,5 @@
 """Questions of choices: which answers are taken, and that each decides one choice."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_runtime.conditions import awaiting, truth

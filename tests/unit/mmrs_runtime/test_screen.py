@@ -1,7 +1,5 @@
 """Robots rely on a process whether anybody reads what it says or not."""
 
-from __future__ import annotations
-
 import io
 import os
 import threading

@@ -1,7 +1,5 @@
 """How robots are, as people read it."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_runtime.engine.status import WAITS, WORKS

@@ -1,7 +1,5 @@
 """Steps as lines of logs, and the files that these are written to."""
 
-from __future__ import annotations
-
 import json
 
 import jsonschema

@@ -1,7 +1,5 @@
 """Whoever gives an order is told where something else than a process of robots answers."""
 
-from __future__ import annotations
-
 import json
 import socket
 import threading

@@ -1,7 +1,5 @@
 """A small scene with its plan and picture, a simulated run of two drones, and a browser."""
 
-from __future__ import annotations
-
 import subprocess
 from dataclasses import replace
 

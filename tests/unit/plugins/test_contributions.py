@@ -1,7 +1,5 @@
 """What every descriptor of the shipped plug-ins must be, whatever it is about."""
 
-from __future__ import annotations
-
 import re
 from importlib import import_module
 from importlib.metadata import distribution

@@ -1,7 +1,5 @@
 """Every distribution is under the licence of the project, and the page on licences is true."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from importlib.metadata import metadata

@@ -1,7 +1,5 @@
 """Robots and moves for runs in tests."""
 
-from __future__ import annotations
-
 import pytest
 from live_runs import Flight
 

@@ -1,7 +1,5 @@
 """Faults that a policy has a robot bear, where its backend has broken off what it did."""
 
-from __future__ import annotations
-
 from math import inf
 
 import pytest

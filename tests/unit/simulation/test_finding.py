@@ -1,7 +1,5 @@
 """What a robot has detected goes with its notifies, and decides choices and ways of those that get them."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """How far robots get in what time, and at what cost."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

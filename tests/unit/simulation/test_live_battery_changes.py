@@ -1,7 +1,5 @@
 """Battery changes that operators confirm while robots run."""
 
-from __future__ import annotations
-
 from math import inf
 
 import pytest

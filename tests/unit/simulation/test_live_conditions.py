@@ -1,7 +1,5 @@
 """Functions of users decide choices in threads of their own: whatever they do, the run goes on."""
 
-from __future__ import annotations
-
 import threading
 import time
 from math import inf

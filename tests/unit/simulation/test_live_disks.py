@@ -1,7 +1,5 @@
 """Logs of runs in real time on disks that are slow, or that fail: nobody but who must waits for them."""
 
-from __future__ import annotations
-
 import os
 import threading
 from errno import EIO

@@ -1,7 +1,5 @@
 """What goes wrong while a run goes on in real time."""
 
-from __future__ import annotations
-
 import threading
 import time
 from math import inf

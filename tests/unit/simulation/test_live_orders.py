@@ -1,7 +1,5 @@
 """Orders to robots whose run goes on in real time."""
 
-from __future__ import annotations
-
 import time
 from math import inf
 

@@ -1,7 +1,5 @@
 """Orders to robots that are not under way yet, or again."""
 
-from __future__ import annotations
-
 import threading
 import time
 from math import inf

@@ -1,7 +1,5 @@
 """Answers to robots whose run goes on in real time, and what people are told of them."""
 
-from __future__ import annotations
-
 import time
 from math import inf
 

@@ -1,7 +1,5 @@
 """Runs that are resumed while robots are under way: none of them waits for the others to get ready."""
 
-from __future__ import annotations
-
 import time
 from math import inf
 

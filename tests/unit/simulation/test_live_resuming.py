@@ -1,7 +1,5 @@
 """Runs in real time that are broken off, for a battery or for good, and go on."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 from math import inf

@@ -1,7 +1,5 @@
 """Runs in real time: who is woken by what, and how they begin and end."""
 
-from __future__ import annotations
-
 import time
 from math import inf
 

@@ -1,7 +1,5 @@
 """Robots that run on the engine: who steps when, what it does about waits, choices and faults."""
 
-from __future__ import annotations
-
 from math import inf
 
 import pytest

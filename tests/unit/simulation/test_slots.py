@@ -1,7 +1,5 @@
 """The bus within a process."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.testing.small_programs import program, robot

@@ -1,7 +1,5 @@
 """Which vehicle moves the robots of a run is chosen by name, the core's own like any other."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The conformance classes find faulty contributions, and load what a plug-in builds on without testing it."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace

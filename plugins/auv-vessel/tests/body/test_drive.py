@@ -1,7 +1,5 @@
 """A thruster's drive: what it obeys, and when it stops by itself."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st

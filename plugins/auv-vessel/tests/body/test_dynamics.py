@@ -1,7 +1,5 @@
 """The motion of a vehicle against what is known of it in closed form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from math import cos, exp, hypot, log2, pi, sqrt, tanh

@@ -1,7 +1,5 @@
 """Coefficients of a hull against closed forms of special ellipsoids."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import atanh, log, nan, pi, sqrt
 

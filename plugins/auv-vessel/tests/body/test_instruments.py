@@ -1,7 +1,5 @@
 """What the instruments of a simulated vehicle say on its bus."""
 
-from __future__ import annotations
-
 import pytest
 from at_sea import at_sea
 

@@ -5,8 +5,6 @@ M dnu/dt + C(nu) nu + D(nu) nu + g(eta) = tau, with the Coriolis matrix from the
 the Jacobian of roll, pitch, yaw (2.40).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import cos, degrees, radians, sin, tan
 

@@ -1,7 +1,5 @@
 """A simulated vehicle whose thrusters' drives are other nodes."""
 
-from __future__ import annotations
-
 from sample_vessels import pool_sheet
 
 from auv_vessel.body.devices import HELD

@@ -1,7 +1,5 @@
 """Thrust in the water follows the drives; power is by the type's two points."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import exp
 

@@ -1,7 +1,5 @@
 """Whatever a vehicle is made of, its motion is finite, and nothing comes from nothing."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 import pytest

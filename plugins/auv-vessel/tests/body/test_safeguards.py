@@ -1,7 +1,5 @@
 """What becomes of a simulated vehicle when something goes wrong."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """A simulated vehicle on its bus, told what to do by frames only."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

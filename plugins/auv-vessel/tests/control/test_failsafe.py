@@ -1,7 +1,5 @@
 """Everything that may fail: thrust is zero at the bus within the declared time, and the vehicle surfaces."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Whatever fails, in whatever order: laws that hold at the bus."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from random import Random

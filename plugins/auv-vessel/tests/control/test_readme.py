@@ -1,7 +1,5 @@
 """What the plug-in's page says of the control layer is so."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import fields, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the sensor controller says at the ends of what it can say, and after long times."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A process is told to end, at whatever moment."""
 
-from __future__ import annotations
-
 import signal
 
 import pytest

@@ -1,7 +1,5 @@
 """Movement primitives on the whole vehicle, in current and noise."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from math import hypot

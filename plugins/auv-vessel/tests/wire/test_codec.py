@@ -1,7 +1,5 @@
 """Values come back as they were said, and nothing corrupted is believed."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The DBC of a vehicle says to other tools what our codec does."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

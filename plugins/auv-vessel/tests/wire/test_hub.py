@@ -1,7 +1,5 @@
 """The hub, with python-can's client, with a client by sockets alone, and with people who mean no good."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

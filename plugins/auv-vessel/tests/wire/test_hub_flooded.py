@@ -1,7 +1,5 @@
 """A hub that one client floods serves the others as before."""
 
-from __future__ import annotations
-
 import socket
 import threading
 import time

@@ -1,7 +1,5 @@
 """How busy a bus is: against sums by hand, and against what a simulated bus with arbitration does."""
 
-from __future__ import annotations
-
 from math import ceil
 
 import pytest

@@ -1,7 +1,5 @@
 """Ports: what is sent arrives, and a bus that is gone is noticed."""
 
-from __future__ import annotations
-
 import socket
 import threading
 import time

@@ -1,7 +1,5 @@
 """What no bus can be made of is refused before anything is generated, all of it, each with its place."""
 
-from __future__ import annotations
-
 import json
 from math import inf, nan
 

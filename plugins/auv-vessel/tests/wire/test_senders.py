@@ -1,7 +1,5 @@
 """Two senders of one message are told from one that begins anew, and from what networks do to its frames."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import cache
 from random import Random

@@ -1,7 +1,5 @@
 """Lengths of frames, against a reference that goes bit by bit another way."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,7 +1,5 @@
 """Troubles that a hub makes on purpose: loss, corruption, delay, cuts."""
 
-from __future__ import annotations
-
 import time
 from random import Random
 

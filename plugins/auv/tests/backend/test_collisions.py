@@ -1,7 +1,5 @@
 """Simulated vehicles that hit what is in their water."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Faults that are made on purpose between a decision centre and its vehicle's bus."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 

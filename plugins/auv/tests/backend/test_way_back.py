@@ -1,7 +1,5 @@
 """A vehicle that goes on with a program goes back to where it was broken off, by a way that is clear."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

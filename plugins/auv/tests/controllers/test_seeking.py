@@ -1,7 +1,5 @@
 """A vehicle under a generated controller goes where its cameras tell that an object is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 

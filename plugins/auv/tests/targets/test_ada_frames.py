@@ -1,7 +1,5 @@
 """The interpreter, decision centres in Ada and drives in C say and read the same frames."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """A kind of robot that names no vehicle is refused by its name, by each target of this plug-in."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """`mmrs calibrate` as it is typed."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

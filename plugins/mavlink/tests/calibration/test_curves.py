@@ -1,7 +1,5 @@
 """Changes of speed, and the S-curves that they are taken for."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of flights whose figures are known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

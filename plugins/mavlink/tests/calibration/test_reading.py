@@ -1,7 +1,5 @@
 """Logs: those that are read, and those that are refused, each with its cause."""
 
-from __future__ import annotations
-
 import json
 import re
 

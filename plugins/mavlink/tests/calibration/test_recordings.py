@@ -3,8 +3,6 @@
 MMRS_RECORDED_FLIGHTS names a folder of flights, each with a ROBOT.track.csv.gz: the vehicle's own estimate.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

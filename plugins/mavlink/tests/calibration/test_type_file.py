@@ -1,7 +1,5 @@
 """Figures in the file of a robot type."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError

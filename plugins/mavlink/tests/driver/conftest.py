@@ -1,7 +1,5 @@
 """Robots of the flight runtime in the air, each with a simulated vehicle."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import pytest

@@ -1,7 +1,5 @@
 """Batteries of a vehicle, compared with what its program takes before it takes off."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import robot_of
 from mavlink_peer import eventually, linked, value

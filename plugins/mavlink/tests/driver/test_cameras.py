@@ -1,7 +1,5 @@
 """Cameras that continue on their own get their last command again after a break."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_mavlink.driving.cameras import Cameras

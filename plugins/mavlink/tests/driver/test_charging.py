@@ -1,7 +1,5 @@
 """Charging: until the battery is full, or an operator confirms its change."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import HOME
 from mavlink_peer import acknowledged, eventually, linked

@@ -1,7 +1,5 @@
 """Commands: answers, retries, progress, and what is cancelled."""
 
-from __future__ import annotations
-
 import threading
 
 import pytest

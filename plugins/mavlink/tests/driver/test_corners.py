@@ -1,7 +1,5 @@
 """Where a vehicle may go through a place without a stop."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

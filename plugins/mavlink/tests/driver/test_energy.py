@@ -1,7 +1,5 @@
 """When a battery is low: by the reserve, and by the way back from where the robot is."""
 
-from __future__ import annotations
-
 from math import cos, dist, inf, radians, sqrt
 
 import pytest

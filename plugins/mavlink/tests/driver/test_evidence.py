@@ -1,7 +1,5 @@
 """What counts as a sign that a vehicle obeys, and what may come about by accident."""
 
-from __future__ import annotations
-
 from contextlib import contextmanager
 
 import pytest

@@ -1,7 +1,5 @@
 """Whether what a vehicle says of its mission is true: it must have been where it says that it has been."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_mavlink import Local

@@ -1,7 +1,5 @@
 """Distances and differences of places anywhere on the Earth, judged by PROJ's geodesics."""
 
-from __future__ import annotations
-
 from math import isclose
 
 import pytest

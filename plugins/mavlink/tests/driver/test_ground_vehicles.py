@@ -1,7 +1,5 @@
 """Ground vehicles are judged in the plane, whatever they report of their height."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

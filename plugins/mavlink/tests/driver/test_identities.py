@@ -1,7 +1,5 @@
 """A vehicle that starts anew, and two vehicles in turns, told apart by the time since their start."""
 
-from __future__ import annotations
-
 from mmrs_mavlink.links.identity import Identity
 
 

@@ -1,7 +1,5 @@
 """Devices of a vehicle, inspected before it takes off: by its parameters, its camera, and a trial."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Uploads that go wrong in every way that they can, and what the vehicle is left with."""
 
-from __future__ import annotations
-
 import pytest
 from mavlink_peer import PX4, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink

@@ -1,7 +1,5 @@
 """Who has the vehicle, and what it says when it does not obey."""
 
-from __future__ import annotations
-
 import pytest
 from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink

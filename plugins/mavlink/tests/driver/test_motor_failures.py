@@ -1,7 +1,5 @@
 """What a failed motor looks like, and when a copter no longer flies: figures of ArduCopter's simulation."""
 
-from __future__ import annotations
-
 from math import radians
 
 import pytest

@@ -1,7 +1,5 @@
 """Numbers of MAVLink that are written down, so that its library need not be there, are the library's."""
 
-from __future__ import annotations
-
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import ARDUPILOT, PX4, autopilot

@@ -1,7 +1,5 @@
 """When each kind of vehicle is seen to carry out a response."""
 
-from __future__ import annotations
-
 from contextlib import contextmanager
 
 import pytest

@@ -1,7 +1,5 @@
 """The command line of controllers: what makes no sense is refused before anything moves."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import robot_of
 

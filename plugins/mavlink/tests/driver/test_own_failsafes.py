@@ -1,7 +1,5 @@
 """What a vehicle does by its failsafes: what it is taken back from."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The home that a vehicle has for its own where it takes off away from that of its program."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import HOME, manned
 from patience import until

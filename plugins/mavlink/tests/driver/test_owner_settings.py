@@ -1,7 +1,5 @@
 """Settings of the owner of a vehicle: its fences, whose heartbeats it counts, where its failsafe acts."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import manned
 from mavlink_peer import ARDUPILOT, PX4, linked, value

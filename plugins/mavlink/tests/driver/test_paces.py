@@ -1,7 +1,5 @@
 """How fast vehicles go where they are told to, and how near: ArduPilot's forget speeds, and stop early."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import hypot
 

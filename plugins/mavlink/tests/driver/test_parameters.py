@@ -1,7 +1,5 @@
 """Parameters: asked for together, written with read-back, and in each autopilot's coding."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

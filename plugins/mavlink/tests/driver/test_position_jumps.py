@@ -1,7 +1,5 @@
 """What a vehicle takes for its place: jumps are noticed, and nothing that it can fly is one."""
 
-from __future__ import annotations
-
 from math import cos, radians, sin
 
 import pytest

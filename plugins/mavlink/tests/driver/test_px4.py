@@ -1,7 +1,5 @@
 """PX4's way of being steered, as far as it can be told without one: set-points, modes, missions."""
 
-from __future__ import annotations
-
 import threading
 from contextlib import contextmanager
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Take-off of a PX4, which sets its home by itself, as a robot of the runtime has it."""
 
-from __future__ import annotations
-
 import threading
 
 import pytest

@@ -1,7 +1,5 @@
 """Several vehicles on one port, and who is heard."""
 
-from __future__ import annotations
-
 import socket
 import threading
 

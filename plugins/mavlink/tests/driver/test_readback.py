@@ -1,7 +1,5 @@
 """Which differences between what was uploaded and what is given back are none, by autopilot."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import nan
 

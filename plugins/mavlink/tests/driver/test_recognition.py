@@ -1,7 +1,5 @@
 """Whether a vehicle that stands somewhere is the robot's, and not that of another one."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from dataclasses import replace
 from math import inf

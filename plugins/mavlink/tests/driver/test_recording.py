@@ -1,7 +1,5 @@
 """What goes over a link, as the black box keeps it."""
 
-from __future__ import annotations
-
 import json
 import threading
 

@@ -1,7 +1,5 @@
 """Modes that the program has asked for itself, and that the vehicle shows late."""
 
-from __future__ import annotations
-
 import threading
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Autopilots that start anew, where policies say that the robot carries on."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import SPEEDUP, manned, robot_of
 from patience import until

@@ -1,7 +1,5 @@
 """Ways back: where the program has led or still leads, and no farther than needed."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest

@@ -1,7 +1,5 @@
 """Where runs of an uploaded mission begin, with vehicles that take what they are told each in their way."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

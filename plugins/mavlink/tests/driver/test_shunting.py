@@ -1,7 +1,5 @@
 """Rovers that steer like cars turn to their target within their turning radius before they set out."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import cos, degrees, hypot, radians, sin
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Signed frames: who is believed, and what holds over restarts."""
 
-from __future__ import annotations
-
 import json
 import stat
 import time

@@ -1,7 +1,5 @@
 """Sensors that publish no value: silent devices, as policies say."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import manned, robot_of
 

@@ -1,7 +1,5 @@
 """A vehicle that falls silent in the middle of an exchange: the policy's seconds say when it is lost."""
 
-from __future__ import annotations
-
 import threading
 import time
 from contextlib import contextmanager, suppress

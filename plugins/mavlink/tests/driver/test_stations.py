@@ -1,7 +1,5 @@
 """Ground stations of people: who hears them, and when they count as lost."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import robot_of
 from mavlink_peer import HERE, PX4, THERE, eventually, heartbeat, linked, two_linked

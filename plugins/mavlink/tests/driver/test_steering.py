@@ -1,7 +1,5 @@
 """Pointing gimbals, turning, and going where the vehicle is told."""
 
-from __future__ import annotations
-
 import pytest
 from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink

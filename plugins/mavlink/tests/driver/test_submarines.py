@@ -1,7 +1,5 @@
 """Vehicles below the surface: they hold with their motors, and have come up only when they are up."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Targets in GUIDED: sent once, and again where the vehicle does not go there."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import HOME, manned, robot_of
 

@@ -1,7 +1,5 @@
 """What a vehicle tells, in words: what it lacks, what threatens it, what it has answered by itself."""
 
-from __future__ import annotations
-
 import pytest
 from mavlink_peer import PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink

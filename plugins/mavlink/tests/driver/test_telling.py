@@ -1,7 +1,5 @@
 """What robots report, as people at ground stations read it."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import robot_of
 from hypothesis import given

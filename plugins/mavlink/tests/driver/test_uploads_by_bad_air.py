@@ -1,7 +1,5 @@
 """Plans that go over links that lose, double, delay and reorder: kept whole, or refused truthfully."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 

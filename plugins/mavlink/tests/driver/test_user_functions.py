@@ -1,7 +1,5 @@
 """What controllers refuse to begin without, and what becomes of what the user's functions find."""
 
-from __future__ import annotations
-
 import sys
 import threading
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What ends a robot's program: seen by the watch on a real link to a simulated vehicle."""
 
-from __future__ import annotations
-
 import pytest
 from flight_crew import OVERHEAD, SPEEDUP, in_background, robot_of
 from patience import until

@@ -1,7 +1,5 @@
 """Which vehicles are driven by hand, and which programs; what is told before they move."""
 
-from __future__ import annotations
-
 import time
 from contextlib import ExitStack
 

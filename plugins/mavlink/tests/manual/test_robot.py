@@ -1,7 +1,5 @@
 """The backend ardusub-manual drives the simulated ArduSub, over UDP and faster than the clock."""
 
-from __future__ import annotations
-
 from math import hypot
 
 import pytest

@@ -1,7 +1,5 @@
 """A mission from MML to its replayed log, by an ArduSub that never knows where it is."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

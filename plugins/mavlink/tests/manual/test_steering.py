@@ -1,7 +1,5 @@
 """Steering by sticks against a vehicle that answers them at once, in water that may move."""
 
-from __future__ import annotations
-
 from math import cos, hypot, radians, sin
 
 import pytest

@@ -1,7 +1,5 @@
 """What goes wrong with a vehicle that is driven by hand is told, and nobody is driven on."""
 
-from __future__ import annotations
-
 import pytest
 from dives_by_hand import DEVICE_ACTION, sub
 from mavlink_peer import linked

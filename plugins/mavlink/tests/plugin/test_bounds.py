@@ -1,7 +1,5 @@
 """What vehicles take lies within the bounds of the check: legs of simulated ones, and what was measured."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from math import cos, dist, radians, sin

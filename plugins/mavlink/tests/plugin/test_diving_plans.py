@@ -1,7 +1,5 @@
 """Missions for ArduSub: depths are negative heights above a home at the surface."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

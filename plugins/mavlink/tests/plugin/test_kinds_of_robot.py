@@ -1,7 +1,5 @@
 """Which vehicle carries a robot follows from its kind; a kind that names none is refused by its name."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

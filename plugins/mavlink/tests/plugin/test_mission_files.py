@@ -1,7 +1,5 @@
 """Missions in both formats hold the same items, wherever a robot goes."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A plug-in contributes a vehicle profile, and a robot kind that is carried by it, with moves of its own."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Plans for robots whose type says that a PX4 flies them."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from math import isnan

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from dataclasses import replace
 
 from mmrs_multicopter.testing import quad, robot_program, target_input

@@ -1,7 +1,5 @@
 """What nobody has taught a MAVLink target is refused by every one of them, with its place."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Lists of waypoints, as pymavlink reads them: MAVProxy reads them with the same classes."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

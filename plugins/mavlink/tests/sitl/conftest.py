@@ -1,7 +1,5 @@
 """A ground station for simulated vehicles."""
 
-from __future__ import annotations
-
 import pytest
 from simulated.ground import Ground
 

@@ -1,7 +1,5 @@
 """Batteries of simulated vehicles."""
 
-from __future__ import annotations
-
 import pytest
 from simulated import Bench
 

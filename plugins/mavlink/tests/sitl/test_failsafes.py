@@ -1,7 +1,5 @@
 """Failsafes of an ArduPilot, as its parameters configure them."""
 
-from __future__ import annotations
-
 import pytest
 from simulated import Bench
 

@@ -1,7 +1,5 @@
 """Injected faults, as the ground station sees them."""
 
-from __future__ import annotations
-
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 

@@ -1,7 +1,5 @@
 """What is accepted of items, and what is left of them."""
 
-from __future__ import annotations
-
 from math import nan
 
 import pytest

@@ -1,7 +1,5 @@
 """Simulated vehicles take legs as S-curves, and keep to them, however steep these are."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 from itertools import pairwise
 from math import dist

@@ -1,7 +1,5 @@
 """Missions: corners, holds, photos, jumps, what is reported, and what never starts."""
 
-from __future__ import annotations
-
 from math import hypot
 
 import pytest

@@ -1,7 +1,5 @@
 """Flight modes: what a vehicle does in them, which it refuses, and its home."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import atan2, degrees, hypot
 

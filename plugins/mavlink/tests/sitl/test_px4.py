@@ -1,7 +1,5 @@
 """PX4: OFFBOARD, failsafes, rally points, missions and parameters."""
 
-from __future__ import annotations
-
 import math
 import struct
 

@@ -1,7 +1,5 @@
 """Messages that a vehicle routes between its radios."""
 
-from __future__ import annotations
-
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from simulated.ground import Ground

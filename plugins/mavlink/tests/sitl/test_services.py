@@ -1,7 +1,5 @@
 """The link of a vehicle: parameters, requests, rates and detections."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 import pytest

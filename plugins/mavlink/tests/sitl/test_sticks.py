@@ -1,7 +1,5 @@
 """Manual control of an underwater vehicle, which disarms when it stops."""
 
-from __future__ import annotations
-
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 

@@ -1,7 +1,5 @@
 """A gateway for robot 'a' in a process of its own, a program that speaks to it, and robot 'b' on the bus."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import time

@@ -1,7 +1,5 @@
 """Programs that go, hang or are silent are lost peers, and so are those of gateways that end."""
 
-from __future__ import annotations
-
 import os
 import signal
 import socket

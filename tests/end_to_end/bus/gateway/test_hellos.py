@@ -1,7 +1,5 @@
 """Who may speak to a gateway, and in which order."""
 
-from __future__ import annotations
-
 import json
 import socket
 import stat

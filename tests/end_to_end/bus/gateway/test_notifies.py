@@ -1,7 +1,5 @@
 """What programs without Zenoh do over a gateway: one line of JSON, one answer."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A small sound project in memory, for tests to break."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

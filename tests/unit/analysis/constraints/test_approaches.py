@@ -1,7 +1,5 @@
 """Moves to a distance from their target."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages import behaviour

@@ -1,7 +1,5 @@
 """Emergency areas have room for robots, beside what these keep from, too."""
 
-from __future__ import annotations
-
 import pytest
 
 

@@ -1,7 +1,5 @@
 """What runs constraints."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.analysis.constraints.findings import called, finding

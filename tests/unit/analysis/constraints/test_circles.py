@@ -1,7 +1,5 @@
 """What waits for itself."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Every constraint is broken by one model and kept by another."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Constraints survive models that are not finished, and grounding refuses them in words."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 
 import pytest

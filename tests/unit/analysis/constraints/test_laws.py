@@ -1,7 +1,5 @@
 """Laws that constraints keep whatever the model."""
 
-from __future__ import annotations
-
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from math import inf

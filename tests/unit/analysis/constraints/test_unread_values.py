@@ -1,7 +1,5 @@
 """Nothing follows from a value that cannot be read: it is reported, and no constraint takes its default."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

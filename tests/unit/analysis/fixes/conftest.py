@@ -1,7 +1,5 @@
 """Examples whose texts are spoilt, and what quick fixes make of them."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.analysis.fixes.repair import Repairer

@@ -1,7 +1,5 @@
 """Every quick fix gives a text that was spoilt in one place back as it was."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Every quick fix of the core gives a JSON model that was spoilt in one place back as it was."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What the parts of a new plug-in are called."""
 
-from __future__ import annotations
-
 import keyword
 
 import pytest

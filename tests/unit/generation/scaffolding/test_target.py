@@ -1,7 +1,5 @@
 """The target that a new plug-in begins with writes or refuses whatever robots need."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from importlib import import_module, invalidate_caches

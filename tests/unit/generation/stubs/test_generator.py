@@ -1,7 +1,5 @@
 """pyecoregen makes the stubs: it changes nothing in pyecore, and is asked for only where it is needed."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What Python must call otherwise keeps its name in files, and stubs say what works when a program runs."""
 
-from __future__ import annotations
-
 import ast
 import runpy
 

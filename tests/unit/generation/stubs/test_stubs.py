@@ -1,7 +1,5 @@
 """Stubs of any metamodel: complete, without a name that hides another, and right for type checkers."""
 
-from __future__ import annotations
-
 import ast
 import builtins
 from pathlib import Path

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.languages.values.codecs import parse_base64, parse_bytes, parse_schema_bytes

@@ -1,7 +1,5 @@
 """An odd value after many usual ones, when reader and writers have compiled functions for it."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Who has ended: what robots say themselves goes before what others say of them."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

@@ -1,7 +1,5 @@
 """Endpoints that are none are told before anything is opened."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.cli.running import run_command

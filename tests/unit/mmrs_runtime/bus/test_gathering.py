@@ -1,7 +1,5 @@
 """Waiting for the robots to begin with: whatever is lost on the way, it can be ended at once."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Container
 

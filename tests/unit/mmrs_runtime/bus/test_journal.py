@@ -1,7 +1,5 @@
 """What survives on a disk that has no room for a while."""
 
-from __future__ import annotations
-
 import json
 import resource
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Slots that no robot ever resets: a notify of them is one message, recorded before it is sent."""
 
-from __future__ import annotations
-
 import json
 from contextlib import closing
 from threading import Thread

@@ -1,7 +1,5 @@
 """The list of who is ready, as the first robot keeps it."""
 
-from __future__ import annotations
-
 from mmrs_runtime.bus.meeting import Beginning
 from mmrs_runtime.bus.messages import CommandId, Meet
 from mmrs_runtime.bus.watching import Roster

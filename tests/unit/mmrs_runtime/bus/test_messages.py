@@ -1,7 +1,5 @@
 """Messages of the bus: what is written is read, and nothing else."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The owner of slots: what it keeps, applies, refuses and survives."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The revocation list: whom it shuts out, and which lists are refused."""
 
-from __future__ import annotations
-
 import base64
 import json
 import shutil

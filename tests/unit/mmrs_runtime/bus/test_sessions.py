@@ -1,7 +1,5 @@
 """Without keys, a process is reached from its own computer only, unless an address is given."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """Notifies and notices in progress, while nobody answers."""
 
-from __future__ import annotations
-
 from random import Random
 
 import pytest

@@ -1,7 +1,5 @@
 """An end of the bus goes on whatever goes wrong there, and tells people."""
 
-from __future__ import annotations
-
 import pytest
 from hub import Hub, HubCarrier
 

@@ -1,7 +1,5 @@
 """Runs of two drones, simulated, with their logs and black boxes in a folder."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.cli.simulation import write_logs

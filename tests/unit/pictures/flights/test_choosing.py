@@ -1,7 +1,5 @@
 """A plan chooses as its flight did."""
 
-from __future__ import annotations
-
 import pytest
 from mmrs_multicopter.testing import robot_program
 

@@ -1,7 +1,5 @@
 """Robots of separate processes are laid over each other by the time of day."""
 
-from __future__ import annotations
-
 import json
 from datetime import UTC, datetime, timedelta
 

@@ -1,7 +1,5 @@
 """Everything that logs and black boxes tell of a flight is gathered, and what they do not tell is said."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The ways that moves should have gone, by what a robot began."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

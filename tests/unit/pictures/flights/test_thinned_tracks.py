@@ -1,7 +1,5 @@
 """Tracks that were thinned out stay as near to the fixes as promised."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Where a robot was at a time, as far as anybody knows; and where fixes lie in the frame of a behaviour."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

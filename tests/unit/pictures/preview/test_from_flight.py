@@ -1,7 +1,5 @@
 """The picture of a flight shows what logs and black boxes say, over what was planned."""
 
-from __future__ import annotations
-
 import pytest
 from flights_by_hand import flight_as, track_of
 

@@ -1,7 +1,5 @@
 """Flights made by hand: steps, tracks and entries of a drone or two."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import pytest

@@ -1,7 +1,5 @@
 """How near a robot came to areas, as drawn."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from shapely.geometry import LineString, Polygon

@@ -1,7 +1,5 @@
 """How far a robot was from where it should have been."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

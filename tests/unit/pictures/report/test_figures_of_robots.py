@@ -1,7 +1,5 @@
 """Energy, links, waits, photos and events of robots."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

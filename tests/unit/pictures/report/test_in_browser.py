@@ -1,7 +1,5 @@
 """A real browser shows a report: nothing is fetched and nothing runs, whatever vehicles say."""
 
-from __future__ import annotations
-
 import pytest
 
 from mmrs_core.pictures.flights.planned import Planned

@@ -1,7 +1,5 @@
 """How near robots came to each other."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

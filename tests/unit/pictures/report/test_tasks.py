@@ -1,7 +1,5 @@
 """What was asked, and how much of it was achieved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """What happened is told in words, and what a vehicle said as it said it."""
 
-from __future__ import annotations
-
 from mmrs_core.pictures.flights.planned import Planned
 from mmrs_core.pictures.report.assembly import Given, report_of
 from mmrs_core.pictures.report.page import figures

@@ -1,7 +1,5 @@
 """Ground stations that are left unheard on purpose."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

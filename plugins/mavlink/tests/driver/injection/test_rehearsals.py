@@ -1,7 +1,5 @@
 """Faults of the whole process, each in a process of its own."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

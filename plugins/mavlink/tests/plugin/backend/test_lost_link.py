@@ -1,7 +1,5 @@
 """What vehicles are told to do by themselves about a lost link, while robots go through their waits."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from mmrs_multicopter.testing import LAND, robot_program, take_off, target_input

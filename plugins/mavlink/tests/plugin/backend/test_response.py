@@ -1,7 +1,5 @@
 """A response under the interpreter that fails itself, with a simulated vehicle."""
 
-from __future__ import annotations
-
 from math import nan
 
 import pytest

@@ -1,7 +1,5 @@
 """The way back to where a program was broken off, with a vehicle that is not there."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The thread that has a vehicle do things: interruptions, pauses, faults."""
 
-from __future__ import annotations
-
 import threading
 import time
 
