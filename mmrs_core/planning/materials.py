@@ -144,8 +144,15 @@ class Material:
         )
 
     def strokes(self, begin: int, end: int) -> tuple[Stroke, ...]:
-        """Return the strokes of a run of portions, parts of one stroke put together again."""
-        return joined(stroke for portion in self.portions[begin : end + 1] for stroke in portion)
+        """Return the strokes of a run of portions, parts of one stroke put together again; always these."""
+        if (begin, end) not in self._strokes:
+            parts = (stroke for portion in self.portions[begin : end + 1] for stroke in portion)
+            self._strokes[begin, end] = joined(parts)
+        return self._strokes[begin, end]
+
+    @cached_property
+    def _strokes(self) -> dict[tuple[int, int], tuple[Stroke, ...]]:
+        return {}
 
 
 def _nearest_metres(places: NDArray[np.float64], place: Position) -> float:

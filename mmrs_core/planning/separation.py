@@ -110,9 +110,10 @@ def separated(team: Team, plan: Plan) -> Plan:
     least = distance_to_keep(team.scene)
     if least is None:
         return plan
-    made = _separated(team, Traffic(team.scene, plan, least, pilots=team.pilots))
-    if recharges(made) and Traffic(team.scene, made, least, hasty=True).conflicts:
-        made = _separated(team, Traffic(team.scene, plan, least, hasty=True, pilots=team.pilots))
+    timing, hasty = team.timelines(hasty=False), team.timelines(hasty=True)
+    made = _separated(team, Traffic(team.scene, plan, least, timing=timing, pilots=team.pilots))
+    if recharges(made) and Traffic(team.scene, made, least, timing=hasty).conflicts:
+        made = _separated(team, Traffic(team.scene, plan, least, timing=hasty, pilots=team.pilots))
     return made
 
 
@@ -150,10 +151,10 @@ def starting_later(
         found = planned(decisions)
         if found is None:
             break
-        traffic = Traffic(team.scene, found, least, hasty=hasty)
+        traffic = Traffic(team.scene, found, least, timing=team.timelines(hasty=hasty))
         if not traffic.conflicts and not hasty and recharges(found):
             hasty = True
-            traffic = Traffic(team.scene, found, least, hasty=True)
+            traffic = Traffic(team.scene, found, least, timing=team.timelines(hasty=True))
         if not traffic.conflicts:
             return found
         later = traffic.later_starts()
@@ -197,7 +198,7 @@ class Traffic:
         plan: Plan,
         least: float,
         *,
-        hasty: bool = False,
+        timing: Timelines | None = None,
         pilots: Mapping[str, Pilot] | None = None,
     ) -> None:
         """Make it.
@@ -206,13 +207,13 @@ class Traffic:
             scene: of the plan.
             plan: of all robots.
             least: metres that they have to keep apart.
-            hasty: whether charging may end before its declared time.
+            timing: makes timelines of such plans; None: charging takes as long as declared.
             pilots: by name of robot, whose charges must suffice; None: they are not looked at.
         """
         self.plan, self.least = plan, least
         self._charges = None if pilots is None else Charges(pilots)
         self._robots = {robot.name: robot for robot in scene.robots}
-        self._timing = Timelines(self._robots, hasty=hasty)
+        self._timing = timing or Timelines(self._robots)
         self._names = tuple(each.robot for each in plan.robots)
         self._timelines: Mapping[str, Timeline] = {}
         self._pieces: Mapping[str, Pieces] = {}

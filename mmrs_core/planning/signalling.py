@@ -64,14 +64,14 @@ def signalled(team: Team, plan: Plan, most: float = inf) -> Plan | None:
 
 
 def _signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
-    least, hasty = distance_to_keep(team.scene) or 0.0, recharges(plan)
+    least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
-    traffic = Traffic(team.scene, parts, least, hasty=hasty, pilots=team.pilots)
+    traffic = Traffic(team.scene, parts, least, timing=timing, pilots=team.pilots)
     left = _STEPS
     while left > 0:
         if not traffic.conflicts:
             made = _joined(team.scene, traffic.plan, plan)
-            return None if Traffic(team.scene, made, least, hasty=hasty).conflicts else made
+            return None if Traffic(team.scene, made, least, timing=timing).conflicts else made
         steps = sum(len(each.steps) for each in traffic.plan.robots)
         if steps * len(traffic.conflicts) > left:
             break

@@ -26,6 +26,7 @@ from mmrs_core.planning.sharing import ShareCandidate
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
+from mmrs_core.planning.timeline import Timelines
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
 from mmrs_core.planning.turns import JobResult
 from mmrs_core.scene import Robot, Scene, SharedWorks, Task, Work
@@ -108,6 +109,7 @@ class Team:
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None, float]]()
         self.candidates = dict[tuple[object, ...], ShareCandidate]()
+        self._timelines = dict[bool, Timelines]()
         self._others: dict[tuple[object, ...], Team] = {}
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self._refusals = dict[tuple[str, str], str]()
@@ -223,6 +225,11 @@ class Team:
             {each.name: each for each in tasks},
         )
         return other
+
+    def timelines(self, *, hasty: bool) -> Timelines:
+        """Return what makes the timelines of its plans; `hasty`: whether charging may end too early."""
+        robots = {robot.name: robot for robot in self.scene.robots}
+        return self._timelines.setdefault(hasty, Timelines(robots, hasty=hasty))
 
     def forwards(self, task: str, robot: str) -> Material | None:
         """Return the material of a task for a robot; None if it cannot do the task."""

@@ -51,6 +51,10 @@ _Place: TypeAlias = "tuple[Position, float, float, float, HomeRelation]"
 """Where a robot stands: place, earliest and latest time, radius."""
 
 
+_MOST_PASSAGES = 1000
+"""Passages of a robot that are kept at most."""
+
+
 class HomeRelation(IntEnum):
     """Where a ride is, seen from the robot's own home."""
 
@@ -298,6 +302,8 @@ class _Walk:
         key = self.state, _key(step)
         passage = self.passages.get(key)
         if passage is None:
+            if len(self.passages) >= _MOST_PASSAGES:
+                self.passages.clear()
             passage = self.passages[key] = self._passage(step)
         self.parts.append((passage.rides, self.now, self.by, self._place()))
         self.now, self.by, self.state = self.now + passage.early, self.by + passage.late, passage.after

@@ -11,6 +11,7 @@ from mmrs_core.analysis.distance import paired_distances
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import Traffic, distance_to_keep, first_conflict, stacked_altitudes
+from mmrs_core.planning.team import Team
 from mmrs_core.scene import Policy, Transit
 
 
@@ -87,7 +88,7 @@ def test_robots_keep_apart_also_where_charging_takes_less_time_than_planned():
     found = plan(whole)
     assert complaints(whole, found) == []
     assert found.robots[0].sorties == 2
-    assert not Traffic(whole, found, 10.0, hasty=True).conflicts
+    assert not Traffic(whole, found, 10.0, timing=Team(whole).timelines(hasty=True)).conflicts
 
 
 def nearest(whole, found, name, place):
