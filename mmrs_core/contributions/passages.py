@@ -112,13 +112,20 @@ class Passages:
             before = rates.push(*leg, before)
         return before
 
-    def ahead(self, move: Move, path: tuple[Position, ...], before: Passage | None = None) -> Passage | None:
+    def ahead(
+        self,
+        move: Move,
+        path: tuple[Position, ...],
+        before: Passage | None = None,
+        push: Push | None = None,
+    ) -> Passage | None:
         """Return what a robot saves that need not stop at the end of a move; None: it stops there.
 
         Args:
             move: of the robot.
             path: of the move.
             before: with which it has begun the move; None: from a stop.
+            push: with which it begins the move; None: not known.
         """
         index = self._index[move.id]
         transition = self._robot.transitions.get(index)
@@ -140,7 +147,7 @@ class Passages:
             return None
         entered = before if len(path) == 2 else None
         onward = self.kinematics(following).rates(following.speed)
-        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward)
+        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward, push)
 
 
 def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:

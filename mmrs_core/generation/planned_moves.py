@@ -76,7 +76,7 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
         path = kind.path(move, here, robot.home) if kind is not None and here is not None else None
         seconds = None
         if kind is not None and path is not None and passages is not None:
-            ahead = passages.ahead(move, path, passed)
+            ahead = passages.ahead(move, path, passed, push)
             saved = sum((passed.onward if passed else 0.0, ahead.saved if ahead else 0.0))
             passed = ahead
             limits = replace(passages.kinematics(move), facing=facing, push=push, entering=entering)

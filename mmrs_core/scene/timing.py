@@ -276,7 +276,12 @@ class Rates:
         return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
 
     def passage(
-        self, before: Leg, after: Leg, entered: Passage | None = None, onward: Rates | None = None
+        self,
+        before: Leg,
+        after: Leg,
+        entered: Passage | None = None,
+        onward: Rates | None = None,
+        push: Push | None = STANDING,
     ) -> Passage:
         """Return what a robot saves that passes where one leg ends and another begins.
 
@@ -284,14 +289,15 @@ class Rates:
             before, after: the legs.
             entered: with which it begins the one before; None: from a stop.
             onward: rates of the one after; None: these.
+            push: with which it begins the one before; None: not known.
         """
         if self.timing.slows_down:
-            return self._slowed(before, after, entered or Passage(0.0, 0.0), onward or self)
+            return self._slowed(before, after, entered or Passage(0.0, 0.0), onward or self, push)
         settling, both = self.settling(*before), self.overlap(before, after) / 2.0
         starting = min(self.timing.starting, settling)
         return Passage(settling - starting + both, both + starting)
 
-    def _slowed(self, before: Leg, after: Leg, entered: Passage, onward: Rates) -> Passage:
+    def _slowed(self, before: Leg, after: Leg, entered: Passage, onward: Rates, push: Push | None) -> Passage:
         """Return what a robot saves that slows down for a place, as long as it need not stop for it.
 
         Within its radius it turns to the next leg, for a while, on an arc.
@@ -303,14 +309,19 @@ class Rates:
         speed = self.timing.passing(aside, dist(there[:2], beyond[:2]), beyond[2] - there[2])
         radius = self.timing.corner_radius if speed > 0.0 else 0.0
         begun = entered.start or here
-        near = _moved(there, before, -min(radius, dist(here, there)))
+        near = _moved(there, (begun, there), -min(radius, dist(begun, there)))
         first = self._curve((begun, near), entered.speed, speed)
+        if dist(begun, there) <= radius:  # it has passed it as soon as the one before
+            aside = 0.0
         seconds = turning(first.leaves, aside, self.timing.acceleration, self.timing.jerk)
         half = min(asin(min(1.0, aside)), NEARLY_BACK)
         way = seconds * first.leaves / 2.0 * (tan(half) / half if half > 0.0 else 1.0)
         start = _moved(_moved(near, before, way), after, way)
         rest = onward._curve((start, beyond), first.leaves).seconds + seconds
         saved = self._curve((begun, there), entered.speed).seconds - first.seconds + self.settling(*before)
+        saved += self._lag(self._stopping(*before)[0], *before, push) - self._lag(
+            first.seconds, *before, push
+        )
         return Passage(
             self.share * saved,
             self.share * (onward._curve(after).seconds - rest),
@@ -342,8 +353,8 @@ class Rates:
         """Return the fewest seconds of a leg whose ends are passed.
 
         An autopilot that passes within a radius is on the neighbouring legs at the same time, for as long
-        as it speeds up and slows down; of another nothing is known but its speed. One that comes from a
-        faster leg slows down on this one.
+        as it speeds up and slows down; of another nothing is known but its speed. One that slows down for
+        places may turn back within the radius. One that comes from a faster leg slows down on this one.
 
         Args:
             start, end: of the leg.
@@ -352,6 +363,8 @@ class Rates:
         if self.timing.corner_radius == inf:
             return self.even(start, end)
         end = self._early(start, end)
+        if self.timing.slows_down:
+            end = self._early(start, end)
         more = max(0.0, entering - self.cruise)
         saved = more * speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
         eased = SPEEDING * self.even(start, end)

@@ -237,7 +237,7 @@ class SimulatedRobot(Vehicle):
         kinematics = replace(self._passages.kinematics(move), facing=self._facing, push=self._push)
         rates = kinematics.rates(move.speed)
         turning = rates.turning(path[0], path[1], self._facing) if len(path) > 1 else 0.0
-        ahead = self._passages.ahead(move, path, self._passed) if through else None
+        ahead = self._passages.ahead(move, path, self._passed, self._push) if through else None
         seconds = kind.seconds(move, path, kinematics, self._robot.travel_mode).expected
         seconds -= turning + (self._passed.onward if self._passed is not None else 0.0)
         self._facing = self._passages.facing(move, path, self._facing) if ahead is None else None

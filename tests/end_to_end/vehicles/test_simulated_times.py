@@ -11,7 +11,7 @@ from shutil import copytree, ignore_patterns
 import pytest
 from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
 from flown_times.simulated import simulate_mission, simulate_steps
-from real_flights.routes import COPTER, SUB, Route, on_px4, routes
+from real_flights.routes import COPTER, ROVER, SUB, Route, on_px4, routes
 from real_flights.table import FLIGHTS
 
 FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
@@ -99,6 +99,15 @@ def test_a_simulated_px4_passes_any_corner_as_planned(places, tmp_path):
     (found,) = compared(tmp_path / "models")
     assert found.whole
     assert list(found.faults()) == []
+
+
+def test_a_simulated_car_turns_round_as_slowly_as_real_ones(tmp_path):
+    """An ArduRover took 14.9 s for 12 m, 31.4, 23.4, 23.4 and 22.8 s for the way back and on again."""
+    places = [(0.0, 12.0 * (index % 2), 0.0) for index in range(1, 6)]
+    routes(Route("Badger", ROVER, places, 1.0))(tmp_path / "models")
+    simulate_steps(tmp_path / "models")
+    (found,) = compared(tmp_path / "models")
+    assert sum(seconds for _, seconds in found.legs.values()) == pytest.approx(115.9, rel=0.1)
 
 
 @recorded

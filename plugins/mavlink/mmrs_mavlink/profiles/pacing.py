@@ -210,9 +210,9 @@ PX4_COPTER = AutopilotTiming(
         turning=0.5,
         level_within=0.8,
         acceptance=2.0,
-        settling=0.3,
-        lag=3.5,
-        lag_within=7.0,
+        settling=0.2,
+        lag=3.7,
+        lag_within=6.3,
         lag_halved=1.9,
         spread=0.4,
         reporting=5.0,
@@ -269,6 +269,6 @@ turns by 20°, and 9.5 s by 135°; in one direction, legs of 5 m at 5 m/s took 1
 2.2 and 2.4 s, and of 15 m with 3 m up or down at 5 m/s 5.3 s; legs of 12 m at 3 m/s between turns right round
 6.4 s; and in one direction legs of 20 m at 9 and at 2 m/s by turns 4.3 and 6.3 s.
 
-By its controllers alone the lag would be 1 / MPC_XY_VEL_I_ACC, 2.5 s, times v / (v + 2 MPC_XY_P), and its
-time constant 6.3 s; settling, lag and time constant are fitted to 53 flights.
+By its controllers the lag is 1 / MPC_XY_VEL_I_ACC, 2.5 s, times v / (v + 2 MPC_XY_P), and its time constant
+6.3 s. The lag, of which that is two thirds, and settling are fitted to 56 flights.
 """

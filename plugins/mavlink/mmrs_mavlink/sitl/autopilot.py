@@ -11,6 +11,7 @@ from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
 from mmrs_mavlink.sitl.battery import Battery
 from mmrs_mavlink.sitl.body import Body, Vector, course
+from mmrs_mavlink.sitl.car import Car
 from mmrs_mavlink.sitl.items import ABOVE_SEA, FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
 from mmrs_runtime.controllers.geodesy import metres_per_degree, wrapped
@@ -80,7 +81,8 @@ class SimulatedAutopilot:
         """Stand at home after boot."""
         self.settings, self.px4, self.flies = settings, settings.firmware == PX4, settings.profile.flies
         self.first_item = int(settings.profile.autopilot.missions.begins_with_home)
-        self.body = Body(settings.profile.pacing.step)
+        kind = Car if settings.profile.drives and not settings.spins else Body
+        self.body = kind(settings.profile.pacing.step)
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.photos: list[Vector] = []
         self.takes_photos = True
@@ -233,6 +235,8 @@ class SimulatedAutopilot:
         body.speed = self._value(LARGEST) if guided else (speeds or [self.usual_speed()])[-1]
         body.climb, body.descent = self._value(self.settings.profile.climbs), self.usual_descent()
         body.turn_rate = min(self._value(self.settings.profile.yaw_rates), pacing.turn_rate)
+        if isinstance(body, Car):
+            body.steers = one_by_one
 
     def usual_speed(self) -> float:
         """Return the default speed, metres per second."""

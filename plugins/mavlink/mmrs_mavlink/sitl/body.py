@@ -238,7 +238,7 @@ class Body:
             leg = self._legs.pop(0)
             self._push, self._start = self._pushed(leg), plus(self._start, leg.path, 1.0)
             self._passing = leg if leg.passes else None
-            if leg.passes:
+            if leg.passes and leg.length > CLOSE:
                 self._begin_to_turn(leg, target)
         position, self.velocity, self._acceleration = self._start, STILL, STILL
         if self._passing is not None and not self._legs:

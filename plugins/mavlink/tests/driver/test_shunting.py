@@ -30,7 +30,7 @@ def at(angle: float, metres: float) -> Geographic:
 def sent_to(angle: float, metres: float, radius: float):
     """Return the rover and what it was sent, once it has driven from home, where it looks north."""
     robot = replace(robot_of(vehicle="rover"), travel=Travel(turning_radius=radius))
-    with manned(robot, kind="rover") as made:
+    with manned(robot, kind="rover", spins=radius == 0.0) as made:
         made.vehicle.prepare(Uploads())
         made.watch.renew()
         place = at(angle, metres)
