@@ -20,18 +20,7 @@ import numpy as np
 import shapely
 
 from mmrs_core.planning.coverage import Sweep, work_over
-from mmrs_core.scene import (
-    Area,
-    AreaUse,
-    Capability,
-    Frame,
-    Part,
-    Ring,
-    Robot,
-    RobotType,
-    Scene,
-    Work,
-)
+from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Ring, Robot, RobotType, Scene, Work
 
 TYPE = RobotType("drone", (), (), 0.5, None, (Capability(0.0, None, (0.0, 10.0)),), (), {}, Part((), {}))
 ROBOT = Robot("drone", TYPE, (0.0, 0.0, 0.0), True, 0.0, "NORMAL", 1.0)

@@ -98,11 +98,7 @@ def check_models(models: ModelSet, contributions: Contributions) -> tuple[Diagno
 
 
 def valid_models(
-    mission: Path,
-    contributions: Contributions,
-    *,
-    context: Path | None = None,
-    robots: Sequence[Path] = (),
+    mission: Path, contributions: Contributions, *, context: Path | None = None, robots: Sequence[Path] = ()
 ) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
     """Return models without errors, and their warnings.
 

@@ -65,10 +65,7 @@ class Plugins:
 
 
 def load_plugins(
-    *,
-    only_core: bool = False,
-    extra: Mapping[str, object] | None = None,
-    quiet_migration: bool = False,
+    *, only_core: bool = False, extra: Mapping[str, object] | None = None, quiet_migration: bool = False
 ) -> Plugins:
     """Return the installed plug-ins, loaded in the order of their names.
 

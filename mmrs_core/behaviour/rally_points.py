@@ -11,10 +11,7 @@ from mmrs_core.scene.rally_points import rally_points
 
 
 def rally_points_of(
-    robot: RobotProgram,
-    program: Program,
-    types: Mapping[str, RobotType],
-    areas: Iterable[Area],
+    robot: RobotProgram, program: Program, types: Mapping[str, RobotType], areas: Iterable[Area]
 ) -> RallyPoints:
     """Return the rally points of a robot, which differ from those of all other robots of the program.
 

@@ -119,8 +119,7 @@ def _global_options(
     quiet_migration: Annotated[
         bool,
         typer.Option(
-            QUIET_MIGRATION,
-            help="Do not list the changes made when reading models of another dialect.",
+            QUIET_MIGRATION, help="Do not list the changes made when reading models of another dialect."
         ),
     ] = False,
 ) -> None:

@@ -247,9 +247,5 @@ def _place(behaviour: bl.Behaviour, files: BehaviourFiles, session: Session) -> 
     drawn = areas_of(context, ground)
     barred = barriers(elements, drawn, types.values(), known.robot_kinds, known.element_kinds)
     return BehaviourContext(
-        types,
-        (*drawn, *barred),
-        environment_of(context),
-        elements,
-        corridors=corridors_of(context, ground),
+        types, (*drawn, *barred), environment_of(context), elements, corridors=corridors_of(context, ground)
     )

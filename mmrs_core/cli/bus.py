@@ -34,11 +34,7 @@ if TYPE_CHECKING:
 
     from mmrs_runtime.bus import Node, Recorded
 
-app = typer.Typer(
-    rich_markup_mode=None,
-    no_args_is_help=True,
-    add_completion=False,
-)
+app = typer.Typer(rich_markup_mode=None, no_args_is_help=True, add_completion=False)
 
 Listen = Annotated[
     list[str] | None,
@@ -55,8 +51,7 @@ Connect = Annotated[
     ),
 ]
 Config = Annotated[
-    Path | None,
-    typer.Option("--config", metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'."),
+    Path | None, typer.Option("--config", metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'.")
 ]
 Run = Annotated[str, typer.Option("--run", metavar="NAME", help="Run name.")]
 
@@ -143,10 +138,7 @@ def gateway(
     robot: Annotated[
         str,
         typer.Option(
-            "--robot",
-            metavar="NAME",
-            help="Robot that the program represents.",
-            autocompletion=robot_names,
+            "--robot", metavar="NAME", help="Robot that the program represents.", autocompletion=robot_names
         ),
     ],
     listen: Listen = None,

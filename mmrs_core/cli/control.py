@@ -44,10 +44,7 @@ def control(
     says: Annotated[
         str,
         typer.Option(
-            "--says",
-            metavar="yes|no",
-            help="With answer: the answer.",
-            autocompletion=one_of("yes", "no"),
+            "--says", metavar="yes|no", help="With answer: the answer.", autocompletion=one_of("yes", "no")
         ),
     ] = "",
     seconds: Annotated[

@@ -69,8 +69,7 @@ def convert(
     names: Annotated[
         bool,
         typer.Option(
-            "--names",
-            help="Write references as names where these are unambiguous. Eclipse reads paths only.",
+            "--names", help="Write references as names where these are unambiguous. Eclipse reads paths only."
         ),
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,

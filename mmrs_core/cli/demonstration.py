@@ -88,11 +88,7 @@ class Demonstration:
 
 
 def demonstrate(
-    stages: CommandStages,
-    example: Path,
-    folder: Path,
-    settings: DemoSettings,
-    others: Iterable[Path],
+    stages: CommandStages, example: Path, folder: Path, settings: DemoSettings, others: Iterable[Path]
 ) -> Demonstration:
     """Take an example through all stages, and write it and their results to a folder.
 

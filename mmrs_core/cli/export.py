@@ -55,9 +55,7 @@ def export(
     only: Annotated[
         list[Layer] | None,
         typer.Option(
-            "--only",
-            metavar="LAYER",
-            help=f"Layer to export: {', '.join(Layer)}. Default: all. Repeatable.",
+            "--only", metavar="LAYER", help=f"Layer to export: {', '.join(Layer)}. Default: all. Repeatable."
         ),
     ] = None,
     logs: Annotated[

@@ -13,12 +13,10 @@ from mmrs_core.languages.modelset import model_in
 from mmrs_core.languages.references.project import robot_files_in
 
 Project = Annotated[
-    Path,
-    typer.Argument(metavar="PROJECT", help="Folder of the project, or its mission file."),
+    Path, typer.Argument(metavar="PROJECT", help="Folder of the project, or its mission file.")
 ]
 Behaviour = Annotated[
-    Path,
-    typer.Argument(metavar="BEHAVIOUR", help="Behaviour file, or a folder that contains behaviour.xmi."),
+    Path, typer.Argument(metavar="BEHAVIOUR", help="Behaviour file, or a folder that contains behaviour.xmi.")
 ]
 Context = Annotated[
     Path | None,
@@ -41,8 +39,7 @@ TimeLimit = Annotated[
 Explain = Annotated[
     bool,
     typer.Option(
-        "--explain",
-        help="Explain the plan: critical path, limits, and the cost of assigning other robots.",
+        "--explain", help="Explain the plan: critical path, limits, and the cost of assigning other robots."
     ),
 ]
 

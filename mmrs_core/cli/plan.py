@@ -11,15 +11,7 @@ import typer
 
 from mmrs_core.cli.conversion import SchemaLocation, places_in
 from mmrs_core.cli.output import progress, say_json, say_lines, tell, written
-from mmrs_core.cli.parameters import (
-    Context,
-    Explain,
-    Project,
-    Robots,
-    Seed,
-    TimeLimit,
-    robot_files,
-)
+from mmrs_core.cli.parameters import Context, Explain, Project, Robots, Seed, TimeLimit, robot_files
 from mmrs_core.cli.plan_words import explanation_lines, explanation_summary, plan_lines, plan_summary
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
 from mmrs_core.cli.session import CommandStages, Session, require_safe

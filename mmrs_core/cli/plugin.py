@@ -20,10 +20,7 @@ from mmrs_core.generation.scaffolding.names import plugin_names
 from mmrs_core.plugins import GROUP
 
 app = typer.Typer(
-    rich_markup_mode=None,
-    help="List and create plug-ins.",
-    no_args_is_help=True,
-    add_completion=False,
+    rich_markup_mode=None, help="List and create plug-ins.", no_args_is_help=True, add_completion=False
 )
 
 

@@ -45,8 +45,7 @@ def preview(
     project: Annotated[
         Path,
         typer.Argument(
-            metavar="PROJECT",
-            help="Folder of the project, its mission file, or a behaviour file.",
+            metavar="PROJECT", help="Folder of the project, its mission file, or a behaviour file."
         ),
     ],
     output: Annotated[
@@ -141,11 +140,7 @@ def drawn_on_failure(stages: CommandStages, folder: Path) -> Iterator[None]:
 
 
 def _of_behaviour(
-    session: Session,
-    file: Path,
-    context: Path | None,
-    robots: tuple[Path, ...],
-    assume: list[str] | None,
+    session: Session, file: Path, context: Path | None, robots: tuple[Path, ...], assume: list[str] | None
 ) -> Picture:
     from mmrs_core.cli.simulation import answers, fly
     from mmrs_core.pictures.preview.from_run import picture_of_run

@@ -16,15 +16,7 @@ from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import Status, Verdict
 from mmrs_core.pictures.figures import clock
-from mmrs_core.pipeline import (
-    BehaviourContext,
-    explain,
-    plan,
-    read_models,
-    refusals,
-    valid_models,
-    verify,
-)
+from mmrs_core.pipeline import BehaviourContext, explain, plan, read_models, refusals, valid_models, verify
 from mmrs_core.planning.effort import Effort
 from mmrs_core.stages import Stages
 

@@ -27,9 +27,7 @@ CORE_COMMANDS = (
     Command("demo", "Run an example end to end.", "mmrs_core.cli.demo:demo"),
     Command("new", "Make a new mission that can be planned at once.", "mmrs_core.cli.new:new"),
     Command(
-        "import",
-        "Import drawings of map programs into a project.",
-        "mmrs_core.cli.importing:import_drawings",
+        "import", "Import drawings of map programs into a project.", "mmrs_core.cli.importing:import_drawings"
     ),
     Command("validate", "Validate the models of a mission.", "mmrs_core.cli.validate:validate"),
     Command("plan", "Plan a mission and write the robots' behaviour.", "mmrs_core.cli.plan:plan"),
@@ -42,9 +40,7 @@ CORE_COMMANDS = (
     Command("replay", "Check the logs of a run against its behaviour.", "mmrs_core.cli.replay:replay"),
     Command("report", "Write a flight report as HTML.", "mmrs_core.cli.report:report"),
     Command(
-        "preview",
-        "Draw a mission's map, timeline and altitude profile.",
-        "mmrs_core.cli.preview:preview",
+        "preview", "Draw a mission's map, timeline and altitude profile.", "mmrs_core.cli.preview:preview"
     ),
     Command("export", "Export to QGIS, Google Earth and other map programs.", "mmrs_core.cli.export:export"),
     Command("show", "Print a model, or one element, as a tree.", "mmrs_core.cli.show:show"),

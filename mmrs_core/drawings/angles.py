@@ -5,13 +5,7 @@ from __future__ import annotations
 import re
 
 MARKS = str.maketrans(
-    {
-        **dict.fromkeys("′’‘´", "'"),
-        **dict.fromkeys("″”“", '"'),
-        "º": "°",
-        "−": "-",
-        "\N{NO-BREAK SPACE}": " ",
-    }
+    {**dict.fromkeys("′’‘´", "'"), **dict.fromkeys("″”“", '"'), "º": "°", "−": "-", "\N{NO-BREAK SPACE}": " "}
 )
 """How else the marks of degrees, minutes and seconds are typed."""
 SIXTY = 60

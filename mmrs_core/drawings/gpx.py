@@ -8,18 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.drawings.drawing import (
-    Drawing,
-    Geometry,
-    HeightReference,
-    Property,
-    Role,
-)
-from mmrs_core.drawings.extras import (
-    PREFIX,
-    take_extras,
-    times_of,
-)
+from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, Property, Role
+from mmrs_core.drawings.extras import PREFIX, take_extras, times_of
 from mmrs_core.drawings.sheet import DrawnSubject, Sheet
 from mmrs_core.drawings.xml_text import XmlNode, read_tree, root_tag
 

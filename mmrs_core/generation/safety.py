@@ -45,10 +45,7 @@ def effective_policies(
 
 
 def rally_points_by_policy(
-    program: Program,
-    types: Mapping[str, RobotType],
-    kinds: Mapping[Name, RobotKind],
-    areas: tuple[Area, ...],
+    program: Program, types: Mapping[str, RobotType], kinds: Mapping[Name, RobotKind], areas: tuple[Area, ...]
 ) -> dict[str, tuple[Point, ...]]:
     """Return the rally points of the robots that a policy may lead to an emergency area, by robot."""
     found = {}

@@ -68,11 +68,7 @@ def ground_of(model: Element | None, context: Element | None) -> Ground:
 
 
 def _place_geographic(
-    root: Element | None,
-    crs: str,
-    frame: Frame,
-    positions: dict[Element, Position],
-    faults: list[Diagnostic],
+    root: Element | None, crs: str, frame: Frame, positions: dict[Element, Position], faults: list[Diagnostic]
 ) -> None:
     found = [each for each in coordinates_of(root) if is_geographic(each)]
     local = _local(root, found, crs, frame, faults)

@@ -10,14 +10,7 @@ from typing import TypeVar, get_args
 from mmrs_core.grounding.coordinates import Ground
 from mmrs_core.grounding.features import children, literal, number, texts
 from mmrs_core.grounding.frame import MISSION, is_geographic, is_relative
-from mmrs_core.languages.element import (
-    Element,
-    containing_feature,
-    label_of,
-    metaclass_of,
-    path_of,
-    place_of,
-)
+from mmrs_core.languages.element import Element, containing_feature, label_of, metaclass_of, path_of, place_of
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.scene import Area, AreaUse, Corridor, CorridorUse, Frame, Part, Position, Ring, Value
 

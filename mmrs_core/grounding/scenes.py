@@ -15,16 +15,7 @@ from mmrs_core.grounding.robots import MISSING, robot_type_of
 from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of, place_of
 from mmrs_core.languages.metaclass import Enumeration
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.scene import (
-    Area,
-    Corridor,
-    Dependency,
-    Robot,
-    RobotType,
-    Scene,
-    Task,
-    TravelMode,
-)
+from mmrs_core.scene import Area, Corridor, Dependency, Robot, RobotType, Scene, Task, TravelMode
 
 __all__ = [
     "Ground",

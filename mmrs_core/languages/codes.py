@@ -71,11 +71,7 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "an element of the class that the message names",
             "choose a class that fits, or refer to another element",
         ),
-        "XMI009": Advice(
-            "Too many values",
-            "one value",
-            "keep one value and remove the others",
-        ),
+        "XMI009": Advice("Too many values", "one value", "keep one value and remove the others"),
         "XMI010": Advice(
             "Text where elements are expected, or the reverse",
             "elements inside elements, and text inside values",
@@ -123,9 +119,7 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "rename one of them, or write the path, such as //@tasks.0",
         ),
         "ECO001": Advice(
-            "Missing required value",
-            "a value for every required feature",
-            "add the value: it has no default",
+            "Missing required value", "a value for every required feature", "add the value: it has no default"
         ),
         "ECO002": Advice(
             "Too few or too many values",
@@ -133,9 +127,7 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "add the missing values, or remove the surplus",
         ),
         "ECO003": Advice(
-            "Value of the wrong type",
-            "a value of the type that the message names",
-            "correct the value",
+            "Value of the wrong type", "a value of the type that the message names", "correct the value"
         ),
         "ECO004": Advice(
             "Invalid enum literal",
@@ -147,15 +139,9 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "an element of the class that the message names",
             "replace it by an element of that class, or move it to where it belongs",
         ),
-        "ECO006": Advice(
-            "Duplicate value among unique values",
-            "each value once",
-            "remove the duplicate",
-        ),
+        "ECO006": Advice("Duplicate value among unique values", "each value once", "remove the duplicate"),
         "ECO007": Advice(
-            "Inconsistent containment",
-            "an element that exactly one container contains",
-            "contain it once",
+            "Inconsistent containment", "an element that exactly one container contains", "contain it once"
         ),
         "ECO008": Advice(
             "Reference to an uncontained element",
@@ -193,11 +179,7 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "write it in the format that EMF writes",
             Severity.WARNING,
         ),
-        "FIL001": Advice(
-            "File not found",
-            "an existing file",
-            "correct the path",
-        ),
+        "FIL001": Advice("File not found", "an existing file", "correct the path"),
         "FIL002": Advice(
             "File not readable",
             "a file that the current user may read",
@@ -219,9 +201,7 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "remove the DOCTYPE: it could make a model read other files",
         ),
         "FIL006": Advice(
-            "Reader limit exceeded",
-            "a model within the reader's limits",
-            "check that the file is a model",
+            "Reader limit exceeded", "a model within the reader's limits", "check that the file is a model"
         ),
         "FIL007": Advice(
             "Malformed JSON",
@@ -313,9 +293,7 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "remove the line, or run the mission again for a complete log",
         ),
         "PRJ001": Advice(
-            "Duplicate robot type name",
-            "robot types with different names",
-            "give each type its own name",
+            "Duplicate robot type name", "robot types with different names", "give each type its own name"
         ),
         "PRJ003": Advice(
             "Ambiguous project files",

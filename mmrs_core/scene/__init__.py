@@ -21,15 +21,7 @@ from mmrs_core.scene.primitives import (
     TravelMode,
     Value,
 )
-from mmrs_core.scene.robots import (
-    Battery,
-    Capability,
-    Device,
-    DeviceAction,
-    Kinematics,
-    Robot,
-    RobotType,
-)
+from mmrs_core.scene.robots import Battery, Capability, Device, DeviceAction, Kinematics, Robot, RobotType
 from mmrs_core.scene.works import (
     DISTANCE,
     ActionAt,

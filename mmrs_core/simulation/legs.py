@@ -97,12 +97,7 @@ class Stretch(NamedTuple):
 
 
 def stretches(
-    path: tuple[Position, ...],
-    rates: Rates,
-    seconds: float,
-    kinematics: Kinematics,
-    *,
-    flow: Flow = STILL,
+    path: tuple[Position, ...], rates: Rates, seconds: float, kinematics: Kinematics, *, flow: Flow = STILL
 ) -> tuple[Stretch, ...]:
     """Return how a robot travels along a path; empty if the flow is too strong for it.
 

@@ -6,34 +6,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
-from mmrs_core.behaviour.program import (
-    BEHAVIOUR,
-    Action,
-    Move,
-    Program,
-    RobotProgram,
-    Transition,
-)
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram, Transition
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.samples import ACTION, DEVICE
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.generation.capabilities.probes import Sample, samples_of
 from mmrs_core.plugins import load_plugins
-from mmrs_core.scene import (
-    Area,
-    AreaUse,
-    Frame,
-    Metaclasses,
-    Position,
-    RobotType,
-    Value,
-)
+from mmrs_core.scene import Area, AreaUse, Frame, Metaclasses, Position, RobotType, Value
 from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, notify, robot, use
 
 L_AQUILA = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
-SUPERTYPES: Mapping[tuple[str, str], Metaclasses] = {
-    (BEHAVIOUR, "Recharge"): ((BEHAVIOUR, "HoldPosition"),),
-}
+SUPERTYPES: Mapping[tuple[str, str], Metaclasses] = {(BEHAVIOUR, "Recharge"): ((BEHAVIOUR, "HoldPosition"),)}
 
 
 def move(id: str, kind: str, *, uri: str = BEHAVIOUR, task: str = "", **attributes: Value) -> Move:

@@ -200,10 +200,7 @@ class _Assembly:
         waits = [self._slots[robot.name][signal] for signal in edge.waits]
         if edge.condition is None:
             return bl.MoveTransition(
-                from_=moves[edge.source],
-                to=moves[edge.to],
-                waitFor=waits,
-                fluid=fluid.may_flow(edge),
+                from_=moves[edge.source], to=moves[edge.to], waitFor=waits, fluid=fluid.may_flow(edge)
             )
         assert edge.otherwise is not None
         return bl.Choice(

@@ -10,14 +10,7 @@ from math import ceil, dist, inf, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from mmrs_core.contributions.rules import (
-    ElementKind,
-    RobotKind,
-    Rule,
-    barriers,
-    most_specific,
-    robot_kind_of,
-)
+from mmrs_core.contributions.rules import ElementKind, RobotKind, Rule, barriers, most_specific, robot_kind_of
 from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.reach import Reach, in_range_of, reach_of, remedies_for, unsure

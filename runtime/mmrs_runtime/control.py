@@ -224,13 +224,7 @@ def _written(reply: Mapping[str, object]) -> bytes:
 
 
 def _line(robot: str, order: str, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
-    return {
-        "robot": robot,
-        "order": order,
-        "confirmed": confirmed,
-        "seconds": round(seconds, 4),
-        "why": why,
-    }
+    return {"robot": robot, "order": order, "confirmed": confirmed, "seconds": round(seconds, 4), "why": why}
 
 
 def _order(given: Mapping[str, Any]) -> str:

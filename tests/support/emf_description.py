@@ -8,12 +8,7 @@ from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element, contents, held, holds, metaclass_of
 from mmrs_core.languages.metaclass import Enumeration
 
-_REALS = {
-    "double": ">d",
-    "java.lang.Double": ">d",
-    "float": ">f",
-    "java.lang.Float": ">f",
-}
+_REALS = {"double": ">d", "java.lang.Double": ">d", "float": ">f", "java.lang.Float": ">f"}
 
 
 def metamodel_lines(registry):

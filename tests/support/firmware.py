@@ -83,11 +83,7 @@ ARDUCOPTER = Firmware(
     | {f"INS_ACCSCAL_{axis}": 1.001 for axis in "XYZ"},
 )
 ARDUROVER = Firmware(
-    "ArduRover",
-    "MMRS_ARDUROVER",
-    "rover",
-    "rover",
-    {**LARGE_BATTERY, **POLYGONS_ONLY, **RELAYS},
+    "ArduRover", "MMRS_ARDUROVER", "rover", "rover", {**LARGE_BATTERY, **POLYGONS_ONLY, **RELAYS}
 )
 ARDUROVER_SKID = replace(
     ARDUROVER,

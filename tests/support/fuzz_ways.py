@@ -56,10 +56,7 @@ def large_ways(contributions: Contributions, size: int = 1_000_000) -> tuple[Way
     models = [_widened(each, size) for each in sound_texts(EXAMPLES / "mixed-team", "*.xmi")]
     read = ((name, read_text(text, name, registry)) for name, text in models)
     documents = [(f"{name}.json", to_json(model.roots, registry)) for name, model in read]
-    return (
-        Way("large XMI", reading.text, tuple(models)),
-        Way("large JSON", reading.text, tuple(documents)),
-    )
+    return (Way("large XMI", reading.text, tuple(models)), Way("large JSON", reading.text, tuple(documents)))
 
 
 def _widened(named: tuple[str, bytes], size: int = 40_000) -> tuple[str, bytes]:

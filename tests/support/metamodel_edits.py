@@ -93,11 +93,7 @@ EDITS: dict[str, tuple[str, str, str]] = {
         PAIRED + DEPUTY_OF.replace("eType", 'upperBound="-1" eType'),
         "compatible",
     ),
-    "a reference loses its other end": (
-        MATES,
-        re.sub(' eOpposite="[^"]*"', "", MATES),
-        "changed meaning",
-    ),
+    "a reference loses its other end": (MATES, re.sub(' eOpposite="[^"]*"', "", MATES), "changed meaning"),
     "a type of its own is another in Java": ("java.net.URI", "java.lang.Integer", "incompatible"),
     "a type of its own becomes an enumeration": (
         '"ecore:EDataType" name="Colour" instanceClassName="java.net.URI"',

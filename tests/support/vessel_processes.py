@@ -59,17 +59,7 @@ class Boat:
         self.sheet = sheet
         self.file = folder / "sheet.json"
         self.file.write_text(to_json(sheet))
-        hub = [
-            python(),
-            "-m",
-            "mmrs_core",
-            "can",
-            "hub",
-            "--port",
-            "0",
-            "--log",
-            str(folder / "bus.log"),
-        ]
+        hub = [python(), "-m", "mmrs_core", "can", "hub", "--port", "0", "--log", str(folder / "bus.log")]
         self.hub = subprocess.Popen(
             hub,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, bufsize=1,

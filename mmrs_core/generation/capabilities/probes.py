@@ -6,15 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from mmrs_core.behaviour.program import (
-    BEHAVIOUR,
-    Action,
-    Move,
-    MoveTarget,
-    Program,
-    RobotProgram,
-    Transition,
-)
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, MoveTarget, Program, RobotProgram, Transition
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import Medium, MoveSpec, RobotKind, robot_kind_of
 from mmrs_core.contributions.samples import DEVICE

@@ -6,13 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from mmrs_core.languages.evolution.effects import (
-    Difference,
-    Effect,
-    changed,
-    feature_differences,
-    refused,
-)
+from mmrs_core.languages.evolution.effects import Difference, Effect, changed, feature_differences, refused
 from mmrs_core.languages.evolution.migration import Migration, Renaming, chains
 from mmrs_core.languages.evolution.versions import Version, pairs_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package

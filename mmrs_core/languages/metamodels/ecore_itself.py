@@ -135,10 +135,7 @@ def built_in() -> tuple[ecore.EPackage, ecore.EPackage]:
     """
     types = {**dict.fromkeys(ECORE_CLASSES, ""), **_NOT_IN_FILES}
     texts = dict.fromkeys((*XML_CLASSES, *_XML_TEXTS.split()), "")
-    return (
-        _package("ecore", ECORE, _ECORE, types),
-        _package("type", XML_TYPES, _XML, texts),
-    )
+    return (_package("ecore", ECORE, _ECORE, types), _package("type", XML_TYPES, _XML, texts))
 
 
 def _package(name: str, ns_uri: str, text: str, types: Mapping[str, str]) -> ecore.EPackage:

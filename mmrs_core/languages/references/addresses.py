@@ -6,16 +6,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from mmrs_core.languages.element import (
-    Element,
-    Hidden,
-    Unknown,
-    held,
-    holds,
-    metaclass_of,
-    path_of,
-    root_of,
-)
+from mmrs_core.languages.element import Element, Hidden, Unknown, held, holds, metaclass_of, path_of, root_of
 from mmrs_core.languages.links import LinkedList, raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.documents import Names

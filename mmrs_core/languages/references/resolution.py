@@ -234,12 +234,7 @@ def _as_name(uri: str, reference: Pending, draft: Draft) -> str:
 
 
 def _opened(
-    uri: str,
-    reference: Pending,
-    draft: Draft,
-    library: Library,
-    root: Path | None,
-    registry: Registry,
+    uri: str, reference: Pending, draft: Draft, library: Library, root: Path | None, registry: Registry
 ) -> Draft | None:
     """Return the file that an address leads to; None after a fault."""
     document = uri.rpartition("#")[0]

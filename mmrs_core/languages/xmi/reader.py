@@ -23,14 +23,7 @@ _UUID = f"{XMI} uuid"
 _IDREF = f"{XMI} idref"
 _WRAPPER = f"{XMI} XMI"
 HARMLESS = frozenset(
-    (
-        _TYPE,
-        _XMI_TYPE,
-        f"{XMI} version",
-        f"{XSI} schemaLocation",
-        f"{XSI} noNamespaceSchemaLocation",
-        _UUID,
-    )
+    (_TYPE, _XMI_TYPE, f"{XMI} version", f"{XSI} schemaLocation", f"{XSI} noNamespaceSchemaLocation", _UUID)
 )
 
 

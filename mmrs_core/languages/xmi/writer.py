@@ -217,12 +217,7 @@ class XmiWriter:
         return attributes, children
 
     def _blank(
-        self,
-        element: Element,
-        feature: Feature,
-        depth: int,
-        attributes: _Attributes,
-        children: list[Job],
+        self, element: Element, feature: Feature, depth: int, attributes: _Attributes, children: list[Job]
     ) -> None:
         """Write that nothing is in a feature, if its file said so."""
         if not feature.unsettable or not self._addresses.is_blank(element, feature):

@@ -48,10 +48,7 @@ class Shot:
 
 
 def shots_in(
-    program: Program,
-    flight: Flight,
-    types: Mapping[str, RobotType],
-    contributions: Contributions,
+    program: Program, flight: Flight, types: Mapping[str, RobotType], contributions: Contributions
 ) -> dict[str, tuple[Shot, ...]]:
     """Return all photos of a flight, by robot; types by name, as far as known."""
     kinds, known = contributions.robot_kinds, tuple(contributions.vehicles.values())

@@ -35,11 +35,7 @@ _LONGEST_UNNAMED = 1.0
 
 
 def picture_of_flight(
-    program: Program,
-    flight: Flight,
-    planned: Planned,
-    contributed: Contributions,
-    place: BehaviourContext,
+    program: Program, flight: Flight, planned: Planned, contributed: Contributions, place: BehaviourContext
 ) -> Picture:
     """Return what to show of a flight; tracks are thinned out by a tolerance that a note gives."""
     run = planned.run
@@ -84,11 +80,7 @@ class _Shown:
     """One robot of a flight."""
 
     def __init__(
-        self,
-        program: RobotProgram,
-        flown: Flown,
-        kinds: Mapping[Name, MoveKind],
-        shots: Sequence[Shot],
+        self, program: RobotProgram, flown: Flown, kinds: Mapping[Name, MoveKind], shots: Sequence[Shot]
     ) -> None:
         self._program, self._flown, self._kinds, self._shots = program, flown, kinds, shots
         self._moves = {move.id: move for move in program.moves}

@@ -19,11 +19,7 @@ from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 from mmrs_core.testing.models import breaches, findings
 
 Roots = Callable[[Registry], Iterable[Element]]
-WHOLE = (
-    (MISSION, "Mission"),
-    (CONTEXT, "Context"),
-    (BEHAVIOUR, "Behaviour"),
-)
+WHOLE = ((MISSION, "Mission"), (CONTEXT, "Context"), (BEHAVIOUR, "Behaviour"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,16 +9,7 @@ from sample_vessels import pool_sheet
 
 from auv_vessel import hosting
 from auv_vessel.control.actuators import Actuators
-from auv_vessel.hosting import (
-    LAG,
-    SEEN_BASE,
-    Awake,
-    Rehearsal,
-    WireFault,
-    clock_frame,
-    clock_time,
-    serve,
-)
+from auv_vessel.hosting import LAG, SEEN_BASE, Awake, Rehearsal, WireFault, clock_frame, clock_time, serve
 from auv_vessel.instruments import instruments_of
 from auv_vessel.wire.catalogue import EMERGENCIES
 from auv_vessel.wire.codec import Codec

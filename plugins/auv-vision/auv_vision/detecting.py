@@ -250,13 +250,7 @@ class _Seen:
         )
 
     def _ranged(
-        self,
-        kind: str,
-        segment: Segment,
-        middle: tuple[float, float],
-        margin: int,
-        across: float,
-        fit: float,
+        self, kind: str, segment: Segment, middle: tuple[float, float], margin: int, across: float, fit: float
     ) -> Sighting | None:
         """Return what a region is, at the range at which it fits best."""
         pixel = self._mean(segment)

@@ -85,8 +85,7 @@ PUSHES = {
 """Thrusters of the sample type: metres forward and to starboard, and how they push ahead and down."""
 
 SIZE = Part(
-    (IN_WATER_SIZE,),
-    {"length": 0.8, "width": 0.5, "height": 0.4, "weight": 30.0, "weightInWater": -0.3},
+    (IN_WATER_SIZE,), {"length": 0.8, "width": 0.5, "height": 0.4, "weight": 30.0, "weightInWater": -0.3}
 )
 
 

@@ -85,11 +85,7 @@ class TestRules(RuleConformance):
 
 class TestTargets(TargetConformance):
     plugin = plugin
-    inputs = {
-        "ada": SUB,
-        "can-c": SUB,
-        "can-python": SUB,
-    }
+    inputs = {"ada": SUB, "can-c": SUB, "can-python": SUB}
 
 
 class TestVehicles(VehicleConformance):

@@ -151,8 +151,7 @@ def fix(registry):
 
 CASES = {
     "AUV001": Case(
-        lambda r: [vehicle(r, thruster(r, ("YAW", "HEAVE")))],
-        lambda r: [vehicle(r, thruster(r, ("SWAY",)))],
+        lambda r: [vehicle(r, thruster(r, ("YAW", "HEAVE")))], lambda r: [vehicle(r, thruster(r, ("SWAY",)))]
     ),
     "AUV032": Case(sharing, lambda r: [vehicle(r)]),
     "AUV033": Case(lambda r: [with_a_spare(r)], lambda r: [vehicle(r)]),
@@ -162,8 +161,7 @@ CASES = {
         lambda r: [vehicle(r, thruster(r), thruster(r, id="T2"))],
     ),
     "AUV004": Case(
-        lambda r: [vehicle(r), mission(r, 50.5), lake()],
-        lambda r: [vehicle(r), mission(r, 50.0), lake()],
+        lambda r: [vehicle(r), mission(r, 50.5), lake()], lambda r: [vehicle(r), mission(r, 50.0), lake()]
     ),
     "AUV005": Case(
         lambda r: [vehicle(r, thruster(r, maxThrust=19.0))],
@@ -200,10 +198,7 @@ CASES = {
         lambda r: [vehicle(r, mounted(r, ("SURGE", "HEAVE")))],
         lambda r: [vehicle(r, mounted(r, ("SURGE", "HEAVE"), push=(1.0, 0.0, 0.1)))],
     ),
-    "AUV016": Case(
-        lambda r: [vehicle(r, mounted(r, ("SURGE",), (0.0, 0.1, 0.0)))],
-        lambda r: [twins(r)],
-    ),
+    "AUV016": Case(lambda r: [vehicle(r, mounted(r, ("SURGE",), (0.0, 0.1, 0.0)))], lambda r: [twins(r)]),
     "AUV017": Case(
         lambda r: [vehicle(r, mounted(r, ("SURGE",)), thruster(r, id="T2"))],
         lambda r: [vehicle(r, mounted(r, ("SURGE",)), mounted(r, ("SURGE",), id="T2"))],
@@ -232,8 +227,7 @@ CASES = {
     "AUV023": Case(lambda r: [survey(r, overlap=20.0)], lambda r: [survey(r, overlap=0.2)]),
     "AUV024": Case(lambda r: [survey(r, bottomDepth=5.0)], lambda r: [survey(r, bottomDepth=5.1)]),
     "AUV025": Case(
-        lambda r: [yo_yo(r, minDepth=8.0, maxDepth=2.0)],
-        lambda r: [yo_yo(r, minDepth=2.0, maxDepth=8.0)],
+        lambda r: [yo_yo(r, minDepth=8.0, maxDepth=2.0)], lambda r: [yo_yo(r, minDepth=2.0, maxDepth=8.0)]
     ),
     "AUV026": Case(lambda r: [yo_yo(r, pitch=90.0)], lambda r: [yo_yo(r, pitch=30.0)]),
     "AUV027": Case(lambda r: [survey(r, swath=0.0)], lambda r: [survey(r, swath=0.5)]),

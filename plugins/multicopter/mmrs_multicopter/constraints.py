@@ -28,8 +28,7 @@ def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
         height = max(heights_of_task(task, ground), default=-inf)
         if height > ceiling:
             yield Finding(
-                task,
-                f"task '{label_of(task)}' is at {height:g} m, the team's drones reach {ceiling:g} m",
+                task, f"task '{label_of(task)}' is at {height:g} m, the team's drones reach {ceiling:g} m"
             )
 
 

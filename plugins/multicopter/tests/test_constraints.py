@@ -71,8 +71,7 @@ CASES = {
         lambda r: [drone(r), mission(r, altitude=120.0, home_up=20.0)],
     ),
     "MUL010": Case(
-        lambda r: [flying(r, TAKE_OFF, altitude=0.0)],
-        lambda r: [flying(r, TAKE_OFF, altitude=2.0)],
+        lambda r: [flying(r, TAKE_OFF, altitude=0.0)], lambda r: [flying(r, TAKE_OFF, altitude=2.0)]
     ),
     "MUL011": Case(
         lambda r: [drone(r), flying(r, TAKE_OFF, altitude=101.0)],

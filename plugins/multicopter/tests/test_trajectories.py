@@ -59,10 +59,7 @@ def legs(here, choices):
     return tuple(route)
 
 
-@given(
-    POSITIONS,
-    st.lists(st.tuples(st.sampled_from(["upright", "level", "sloped"]), POSITIONS), max_size=8),
-)
+@given(POSITIONS, st.lists(st.tuples(st.sampled_from(["upright", "level", "sloped"]), POSITIONS), max_size=8))
 def test_moves_pass_every_position_of_their_route_and_no_other(here, choices):
     route = legs(here, choices)
     expected = [route[0], *(b for a, b in pairwise(route) if a != b)]

@@ -63,12 +63,10 @@ CASES = {
     "ROV005": Case(lambda r: [rover(r, wadingDepth=0.6)], lambda r: [rover(r, wadingDepth=0.59)]),
     "ROV006": Case(lambda r: [rover(r, groundClearance=0.6)], lambda r: [rover(r, groundClearance=0.3)]),
     "ROV007": Case(
-        lambda r: [place_with(terrain(r, waterDepth=0.0))],
-        lambda r: [place_with(terrain(r, waterDepth=0.1))],
+        lambda r: [place_with(terrain(r, waterDepth=0.0))], lambda r: [place_with(terrain(r, waterDepth=0.1))]
     ),
     "ROV008": Case(
-        lambda r: [place_with(terrain(r, slope=91.0))],
-        lambda r: [place_with(terrain(r, slope=90.0))],
+        lambda r: [place_with(terrain(r, slope=91.0))], lambda r: [place_with(terrain(r, slope=90.0))]
     ),
     # Half of the diagonal is 0.58 m and the radius 1 m: it must be 1.58 m from the pond's side at 10 m.
     "ROV009": Case(

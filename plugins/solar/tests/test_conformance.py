@@ -184,11 +184,7 @@ def registry():
         ("SOL009", lambda r: [look(r, 1, 1, 2)], "tier 2 is suspected by task 'it'"),
         ("SOL012", lambda r: [rows(r, sideOverlap=0.5)], "sideOverlap of task 'it' is 0.5"),
         ("SOL013", lambda r: [look(r, 1, 1), carrier()], "task 'it' asks for 'TakePicture', no robot type"),
-        (
-            "SOL013",
-            lambda r: [rows(r, deviceId="eye"), carrier()],
-            "has a device 'eye' for that",
-        ),
+        ("SOL013", lambda r: [rows(r, deviceId="eye"), carrier()], "has a device 'eye' for that"),
         ("SOL015", lambda r: [carrier(but(gimbal_pitch_max="-91"))], "property 'gimbal.pitch.max' of device"),
         ("SOL015", lambda r: [carrier(but(capture_interval="0"))], "property 'capture.interval' of device"),
     ],

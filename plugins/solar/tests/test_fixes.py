@@ -11,10 +11,7 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "solar-park"
 
 @pytest.mark.parametrize(
     "wrong",
-    [
-        {"mission.xmi": 'frontOverlap="85"', "context.xmi": 'azimuth="-158"'},
-        {"context.xmi": 'azimuth="562"'},
-    ],
+    [{"mission.xmi": 'frontOverlap="85"', "context.xmi": 'azimuth="-158"'}, {"context.xmi": 'azimuth="562"'}],
 )
 def test_figures_that_can_only_be_meant_in_one_way_are_fixed(wrong, tmp_path):
     folder = tmp_path / "park"

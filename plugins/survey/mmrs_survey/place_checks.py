@@ -88,8 +88,7 @@ def resolution_coarse(task: Element, models: ModelSet) -> Iterator[Finding]:
     resolution = number(task, "groundResolution")
     if resolution is not None and resolution >= COARSE:
         yield Finding(
-            task,
-            f"groundResolution of task '{label_of(task)}' is {resolution:g} m per pixel, as from space",
+            task, f"groundResolution of task '{label_of(task)}' is {resolution:g} m per pixel, as from space"
         )
 
 

@@ -111,29 +111,21 @@ def beside_a_tower(registry, made):
 
 
 CASES = {
-    "SUR001": Case(
-        lambda r: [sized(r, gridResolution=12.0)],
-        lambda r: [grid(r, gridResolution=12.0)],
-    ),
+    "SUR001": Case(lambda r: [sized(r, gridResolution=12.0)], lambda r: [grid(r, gridResolution=12.0)]),
     "SUR002": Case(lambda r: [grid(r), camera(r)], lambda r: [grid(r), camera(r, **OPTICS)]),
     "SUR003": Case(lambda r: [sized(r, sideOverlap=1.0)], lambda r: [sized(r, sideOverlap=0.99)]),
-    "SUR004": Case(
-        lambda r: [grid(r, gridResolution=0.0)],
-        lambda r: [grid(r, gridResolution=0.1)],
-    ),
+    "SUR004": Case(lambda r: [grid(r, gridResolution=0.0)], lambda r: [grid(r, gridResolution=0.1)]),
     "SUR005": Case(lambda r: [grid(r, footprintWidth=9.0)], lambda r: [sized(r)]),
     "SUR006": Case(lambda r: [sized(r, groundResolution=0.01)], lambda r: [grid(r, groundResolution=0.01)]),
     "SUR007": Case(
-        lambda r: [grid(r, gridResolution=12.0, sideOverlap=0.5)],
-        lambda r: [grid(r, gridResolution=12.0)],
+        lambda r: [grid(r, gridResolution=12.0, sideOverlap=0.5)], lambda r: [grid(r, gridResolution=12.0)]
     ),
     "SUR008": Case(
         lambda r: [grid(r, groundResolution=0.01), camera(r, **OPTICS)],
         lambda r: [grid(r, groundResolution=0.01), camera(r, **PIXELS)],
     ),
     "SUR009": Case(
-        lambda r: [sized(r), two_cameras(r)],
-        lambda r: [sized(r, deviceId="left"), two_cameras(r)],
+        lambda r: [sized(r), two_cameras(r)], lambda r: [sized(r, deviceId="left"), two_cameras(r)]
     ),
     "SUR010": Case(
         lambda r: [sized(r, deviceId="what people call it"), camera(r)],
@@ -156,17 +148,12 @@ CASES = {
         lambda r: [task(r, "ObserveTask", duration=1.0, distance=5.0)],
     ),
     "SUR018": Case(
-        lambda r: [field(grid(r, gridResolution=0.7))],
-        lambda r: [field(grid(r, gridResolution=0.71))],
+        lambda r: [field(grid(r, gridResolution=0.7))], lambda r: [field(grid(r, gridResolution=0.71))]
     ),
     "SUR019": Case(
-        lambda r: [field(grid(r, gridResolution=0.1))],
-        lambda r: [field(grid(r, gridResolution=10.0))],
+        lambda r: [field(grid(r, gridResolution=0.1))], lambda r: [field(grid(r, gridResolution=10.0))]
     ),
-    "SUR020": Case(
-        lambda r: [grid(r, groundResolution=2.0)],
-        lambda r: [grid(r, groundResolution=0.49)],
-    ),
+    "SUR020": Case(lambda r: [grid(r, groundResolution=2.0)], lambda r: [grid(r, groundResolution=0.49)]),
     "SUR021": Case(
         lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (50, 0), (99, 0)))),
         lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (99, 0)))),

@@ -139,10 +139,7 @@ def parser_for(robots: Sequence[Robot], driver: Driver) -> argparse.ArgumentPars
 
 
 def options_of(
-    parser: argparse.ArgumentParser,
-    robots: Sequence[Robot],
-    driver: Driver,
-    arguments: Sequence[str] | None,
+    parser: argparse.ArgumentParser, robots: Sequence[Robot], driver: Driver, arguments: Sequence[str] | None
 ) -> Options:
     """Return what a command line says; the driver keeps its part. Exits with a usage error where it is none.
 

@@ -120,10 +120,7 @@ def _somewhere(found: Place, here: Place) -> Place:
 
 
 def look_at(
-    look: Look | None,
-    locators: Mapping[str, Locator],
-    state: State,
-    guard: Callable[[], None] = lambda: None,
+    look: Look | None, locators: Mapping[str, Locator], state: State, guard: Callable[[], None] = lambda: None
 ) -> Look | None:
     """Return a look whose target is a place; the rest as of `place_of`."""
     return None if look is None else replace(look, at=place_of(look.at, locators, state, guard))

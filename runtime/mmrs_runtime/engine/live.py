@@ -146,10 +146,7 @@ def exit_code(ending: Ending) -> int:
 
 
 def _connect(
-    robots: dict[str, Vehicle],
-    live_run: LiveRun,
-    attention: Attention,
-    early: EarlyOrders | None,
+    robots: dict[str, Vehicle], live_run: LiveRun, attention: Attention, early: EarlyOrders | None
 ) -> None:
     """Connect robots one after the other, and look out for orders to those that are there."""
     shared: dict[str, object] = {}

@@ -4,11 +4,7 @@ from dataclasses import replace
 
 from mmrs_core import builtin
 from mmrs_core.behaviour.program import Heading, MoveTarget
-from mmrs_core.testing.conformance import (
-    MoveKindConformance,
-    RobotKindConformance,
-    VehicleConformance,
-)
+from mmrs_core.testing.conformance import MoveKindConformance, RobotKindConformance, VehicleConformance
 from mmrs_core.testing.programs import move
 from mmrs_core.testing.scenes import sample_robot
 

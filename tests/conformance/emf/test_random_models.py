@@ -29,12 +29,7 @@ VALUES = {  # of types that we keep as texts
 }
 UNCHECKED = ("urn:test:suite", "urn:test:parts")
 """Of these, EMF checks the keys of map entries as well."""
-RANDOM = settings(
-    deadline=None,
-    database=None,
-    phases=[Phase.generate],
-    suppress_health_check=[*HealthCheck],
-)
+RANDOM = settings(deadline=None, database=None, phases=[Phase.generate], suppress_health_check=[*HealthCheck])
 
 
 @pytest.fixture(scope="module")

@@ -173,8 +173,7 @@ def test_a_program_that_was_killed_is_resumed_on_the_bus(controllers, endpoint, 
 
 
 @pytest.mark.parametrize(
-    ("response", "codes"),
-    [("LAND", (0, 1)), pytest.param("CONTINUE", (1, 1), marks=pytest.mark.thorough)],
+    ("response", "codes"), [("LAND", (0, 1)), pytest.param("CONTINUE", (1, 1), marks=pytest.mark.thorough)]
 )
 def test_a_robot_that_cannot_keep_its_slots_does_as_its_policy_says(controllers, endpoint, response, codes):
     made = controllers(waiting(Policy("LOG_FAILED", response)))

@@ -41,10 +41,7 @@ def halted(process, autopilot) -> str:
 
 @pytest.mark.parametrize(
     ("after", "to", "words"),
-    [
-        (1, 4, "set ahead to item"),
-        pytest.param(4, 1, "set back from item", marks=pytest.mark.thorough),
-    ],
+    [(1, 4, "set ahead to item"), pytest.param(4, 1, "set back from item", marks=pytest.mark.thorough)],
 )
 def test_a_mission_that_somebody_else_moves_ends_in_a_hold_and_is_not_logged_as_flown(
     controllers, hangar, after, to, words

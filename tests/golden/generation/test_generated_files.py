@@ -26,11 +26,7 @@ def choosing():
     )
     robot = robot_program(
         "Triton 1",
-        [
-            take_off("up", 5.0),
-            replace(buoy, after=(feedback("seen"),)),
-            LAND,
-        ],
+        [take_off("up", 5.0), replace(buoy, after=(feedback("seen"),)), LAND],
         transitions={1: Transition(1, 2, condition="calm", otherwise=3)},
     )
     return program(robot, name="pool", frame=Frame("EPSG:4326", None, None))

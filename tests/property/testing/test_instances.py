@@ -139,8 +139,7 @@ def test_drafts_lack_values_but_hold_no_wrong_ones(registry, data):
 def test_drafts_lack_whatever_may_be_missing(registry, code):
     ropes = drafts_of(registry, KNOTS, "Rope")
     assert found(
-        ropes,
-        lambda rope: code in {fault.code for fault in check_conformance(Model("m", (rope,)), registry)},
+        ropes, lambda rope: code in {fault.code for fault in check_conformance(Model("m", (rope,)), registry)}
     )
 
 

@@ -98,11 +98,7 @@ def _injection(name: str, rows: tuple[Row, ...], faults: str) -> Drill:
 
 
 def _link_lost(
-    fault: str,
-    cases: Sequence[tuple[str, str]],
-    after: float,
-    event: str = "",
-    within: float | None = None,
+    fault: str, cases: Sequence[tuple[str, str]], after: float, event: str = "", within: float | None = None
 ) -> tuple[Row, ...]:
     return tuple(
         Row(
@@ -162,13 +158,7 @@ def _full_disk() -> tuple[Row, ...]:
 def _interruption(how: str, ends: str) -> Drill:
     within = None if how == "hold" else 5.0
     row = Row(f"Ctrl-C, --on-stop {how}", AT, None, leave_alone, "STOPPED", ends, within=within, stay=STAY)
-    return Drill(
-        f"interrupted, --on-stop {how}",
-        (row,),
-        _interrupt,
-        None,
-        ("--on-stop", how),
-    )
+    return Drill(f"interrupted, --on-stop {how}", (row,), _interrupt, None, ("--on-stop", how))
 
 
 def _order_all(order: str, *, resumes: bool = False) -> Drill:
@@ -288,11 +278,7 @@ DRILLS: tuple[Drill, ...] = (
         ("--tries", "12", "--inject", POOR),
         speedup=POOR_SPEEDUP,
     ),
-    Drill(
-        "pilot's stick, then Ctrl-C",
-        (_piloted("RETURN", "TAKEN_OVER"),),
-        _interrupt_soon,
-    ),
+    Drill("pilot's stick, then Ctrl-C", (_piloted("RETURN", "TAKEN_OVER"),), _interrupt_soon),
     _order_all("hold"),
     _order_all("hold", resumes=True),
     _order_all("stop"),

@@ -58,11 +58,7 @@ def event_rows() -> list[Row]:
             "obstacle reported",
             "OBSTACLE",
             strikes.obstacle,
-            [
-                (AT, "HOLD", "holds"),
-                (LEG, "EMERGENCY_AREA", "meadow"),
-                (AUTO, "LAND", "here"),
-            ],
+            [(AT, "HOLD", "holds"), (LEG, "EMERGENCY_AREA", "meadow"), (AUTO, "LAND", "here")],
             "EMERGENCY_AREA",
         ),
         *_event_rows(
@@ -104,13 +100,7 @@ def event_rows() -> list[Row]:
             [(AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
             "EMERGENCY_AREA",
         ),
-        *_event_rows(
-            "point of no return",
-            "",
-            strikes.barely,
-            [(AUTO, "RETURN", "home")],
-            "",
-        ),
+        *_event_rows("point of no return", "", strikes.barely, [(AUTO, "RETURN", "home")], ""),
         *(
             replace(row, settings={"tells_battery": False})
             for row in _event_rows(

@@ -75,10 +75,7 @@ def peer(folder: Path, number: int, response: str, ends: str) -> Outcome:
     """Have two robots in two processes over the bus, and kill or freeze the one that the other waits for."""
     word = "killed" if number == signal.SIGKILL else "frozen"
     outcome = Outcome(f"peer's process {word}", f"PEER_LOST → {response} after 5 s")
-    pads = [
-        Pad("r0", "wait", (("PEER_LOST", response, 5.0),)),
-        Pad("g0", "give", (), 200.0, gives="r0"),
-    ]
+    pads = [Pad("r0", "wait", (("PEER_LOST", response, 5.0),)), Pad("g0", "give", (), 200.0, gives="r0")]
     with Fleet(folder, pads, GENERATED) as fleet:
         vehicle, endpoint = fleet.vehicles["r0"], free_endpoint()
         waiting = fleet.start("--bus-listen", endpoint, robot="r0")

@@ -8,11 +8,7 @@ SILENCE = 2.5
 
 
 def link_rows() -> list[Row]:
-    lost = [
-        (LEG, "RETURN", "home"),
-        (AT, "LAND", "here"),
-        (AUTO, "HOLD", "holds"),
-    ]
+    lost = [(LEG, "RETURN", "home"), (AT, "LAND", "here"), (AUTO, "HOLD", "holds")]
     rows = answered_rows(
         "link lost for good",
         strikes.cut_link,

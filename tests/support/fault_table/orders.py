@@ -81,11 +81,7 @@ def to_all(order: str, *, resumes: bool = False) -> tuple[Row, ...]:
     """Return the rows of an order that all robots get at once, each in another state."""
     return tuple(
         replace(
-            row,
-            fault=row.fault.replace("order ", "order to all: "),
-            together=True,
-            fast=False,
-            resumes=None,
+            row, fault=row.fault.replace("order ", "order to all: "), together=True, fast=False, resumes=None
         )
         for state in AT_ONCE
         for row in _of(state)

@@ -58,10 +58,7 @@ def fly(
             for watch in watches:
                 watch.strike()
             blow(fleet, process)
-        wait_for(
-            lambda: all([watch.settled() for watch in watches]) or _over(process, blow),
-            patience,
-        )
+        wait_for(lambda: all([watch.settled() for watch in watches]) or _over(process, blow), patience)
         for watch in watches:
             watch.observe()
         problems = _end(fleet, process)

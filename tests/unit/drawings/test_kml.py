@@ -136,10 +136,7 @@ def test_all_kml_in_a_kmz_is_read_where_it_lies():
     [
         (b"PK\3\4 and no more", "not readable as an archive"),
         (archive(picture=b""), r"an archive without a \.kml file"),
-        (
-            archive(**{"doc.kml": b" " * (LARGEST_FILE + 1)}),
-            "more than 128 MB of KML in the archive",
-        ),
+        (archive(**{"doc.kml": b" " * (LARGEST_FILE + 1)}), "more than 128 MB of KML in the archive"),
         (
             archive(**{f"{n}.kml": b"" for n in range(MOST_ENTRIES + 1)}),
             "more than 10000 files in the archive",

@@ -1,13 +1,6 @@
 import pytest
 
-from mmrs_core.geometry.polygons import (
-    contains,
-    less,
-    parts,
-    polygon,
-    ring_faults,
-    rings,
-)
+from mmrs_core.geometry.polygons import contains, less, parts, polygon, ring_faults, rings
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
 

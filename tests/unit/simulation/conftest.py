@@ -10,12 +10,7 @@ from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.simulation.run import simulate
 from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
-from mmrs_core.transformation.kinds import (
-    MOVE_KINDS,
-    PLAIN_ROBOT,
-    kinematics_for,
-    straight_travel,
-)
+from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT, kinematics_for, straight_travel
 
 FLYER = ("urn:test", "Flyer")
 RISE = ("urn:test", "Rise")

@@ -7,15 +7,7 @@ import pytest
 
 from mmrs_core.scene import Kinematics
 from mmrs_core.scene.headings import bearing, turn
-from mmrs_core.simulation.legs import (
-    CLIMBING,
-    TimedLeg,
-    cost,
-    current,
-    response_stretches,
-    stretches,
-    wind,
-)
+from mmrs_core.simulation.legs import CLIMBING, TimedLeg, cost, current, response_stretches, stretches, wind
 from mmrs_runtime.timing import LegTiming
 
 FLYER = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0)

@@ -88,9 +88,7 @@ def test_what_nobody_can_know_yet_is_asked_again_and_told_once(live):
         return len(seen) > 3
 
     run = live(
-        program(CHOOSES),
-        Script(),
-        conditions={"sunny": Condition("sunny", lambda state: False, known)},
+        program(CHOOSES), Script(), conditions={"sunny": Condition("sunny", lambda state: False, known)}
     )
     assert run.end().outcome is Outcome.SUCCESS
     assert len(seen) == 4

@@ -64,10 +64,7 @@ def test_a_question_nobody_answers_ends_by_the_policy_of_long_waits(live):
     policy = Policy("WAIT_TOO_LONG", "LAND", 0.2)
     behaviour = program(
         robot(
-            "r",
-            [do("h"), do("x")],
-            choices={"h": ("answer:q", "x", "stop")},
-            wait_policies={"h": (policy,)},
+            "r", [do("h"), do("x")], choices={"h": ("answer:q", "x", "stop")}, wait_policies={"h": (policy,)}
         )
     )
     run = live(behaviour, Script(), conditions=standard_conditions(["answer:q"]))

@@ -173,9 +173,7 @@ def test_a_robot_that_is_not_ready_is_not_touched_where_the_run_is_broken_off_ag
     assert run.script.robots["b"].stops == []
 
 
-LOW = program(
-    *(robot(id, [do("walk")], policies=(Policy("BATTERY_LOW", "RETURN"),)) for id in ("a", "b")),
-)
+LOW = program(*(robot(id, [do("walk")], policies=(Policy("BATTERY_LOW", "RETURN"),)) for id in ("a", "b")))
 
 
 def come_home(broken_off):

@@ -229,10 +229,7 @@ def test_waiting_for_a_time_is_a_hold():
 
 def test_a_branch_becomes_a_choice_whose_arms_meet_again():
     here, left, right = HOME, (5.0, 0.0, 0.0), (0.0, 5.0, 0.0)
-    arms = (
-        ("found", (transit(here, left), transit(left, right))),
-        (None, (transit(here, right),)),
-    )
+    arms = (("found", (transit(here, left), transit(left, right))), (None, (transit(here, right),)))
     model, _ = behaviour_of(plan_of(Branch(0, 0, "t", arms, right), transit(right, here)))
     only = model.robots[0]
     choice = next_of(only, only.moves[0])

@@ -87,8 +87,7 @@ def test_the_doppler_log_is_valid_where_it_has_the_bottom():
 
 
 @pytest.mark.parametrize(
-    ("heading", "seen"),
-    [(0.0, 9.7 - 0.5), (90.0, 4.7 - 0.25), (180.0, 655.35), (270.0, 655.35)],
+    ("heading", "seen"), [(0.0, 9.7 - 0.5), (90.0, 4.7 - 0.25), (180.0, 655.35), (270.0, 655.35)]
 )
 def test_the_sonar_sees_what_is_ahead(heading, seen):
     pool = Surroundings(

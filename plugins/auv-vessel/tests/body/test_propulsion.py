@@ -16,11 +16,7 @@ def test_power_goes_through_what_the_type_says(thrust, watts):
     assert watts_of(THRUSTER, thrust) == pytest.approx(watts)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [{"max_thrust": 18.0}, {"max_power": 90.0}, {"max_power": 0.0}],
-    ids=str,
-)
+@pytest.mark.parametrize("changes", [{"max_thrust": 18.0}, {"max_power": 90.0}, {"max_power": 0.0}], ids=str)
 def test_without_a_second_point_power_is_that_of_an_ideal_propeller(changes):
     assert watts_of(replace(THRUSTER, **changes), 9.0) == pytest.approx(90.0 * 0.5**1.5)
 

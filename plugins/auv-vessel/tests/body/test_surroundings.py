@@ -2,15 +2,7 @@ import json
 
 import pytest
 
-from auv_vessel.body.surroundings import (
-    BUOY,
-    GATE,
-    Obstacle,
-    Surroundings,
-    Thing,
-    from_json,
-    to_json,
-)
+from auv_vessel.body.surroundings import BUOY, GATE, Obstacle, Surroundings, Thing, from_json, to_json
 
 
 def test_surroundings_go_into_a_file_and_come_back():

@@ -194,8 +194,7 @@ def test_a_decision_centre_that_is_heard_again_has_its_goal_pursued() -> None:
 
 
 @pytest.mark.parametrize(
-    "sheet",
-    [pytest.param(FLOATS, id="floats", marks=pytest.mark.thorough), pytest.param(SINKS, id="sinks")],
+    "sheet", [pytest.param(FLOATS, id="floats", marks=pytest.mark.thorough), pytest.param(SINKS, id="sinks")]
 )
 def test_a_vehicle_that_came_up_without_its_decision_centre_stays_idle_for_who_swims_to_it(
     sheet: Sheet,

@@ -103,8 +103,7 @@ def hub(
         Path | None, typer.Option("--log", metavar="FILE", help="Log all frames to FILE in candump format.")
     ] = None,
     simulated: Annotated[
-        bool,
-        typer.Option("--simulated-time", help="Exempt frames that carry simulated time from faults."),
+        bool, typer.Option("--simulated-time", help="Exempt frames that carry simulated time from faults.")
     ] = False,
     seconds: Duration = 0.0,
 ) -> int:

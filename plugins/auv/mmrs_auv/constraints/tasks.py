@@ -71,8 +71,7 @@ def _depths_upside_down(task: Element, models: ModelSet) -> _Findings:
     upper, lower = number(task, "minDepth"), number(task, "maxDepth")
     if upper is not None and lower is not None and lower <= upper:
         yield Finding(
-            task,
-            f"maxDepth of task '{label_of(task)}' is {lower:g} m, not below its minDepth of {upper:g} m",
+            task, f"maxDepth of task '{label_of(task)}' is {lower:g} m, not below its minDepth of {upper:g} m"
         )
 
 

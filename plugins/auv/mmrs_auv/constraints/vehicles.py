@@ -31,8 +31,7 @@ def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
         depth = _deepest(task, ground)
         if depth > deepest + 1e-6:
             yield Finding(
-                task,
-                f"task '{label_of(task)}' is {depth:g} m deep, the team is rated for {deepest:.1f} m",
+                task, f"task '{label_of(task)}' is {depth:g} m deep, the team is rated for {deepest:.1f} m"
             )
 
 

@@ -152,10 +152,7 @@ class ProgramOrders:
         if not isinstance(look.at, Object):
             return Face(self._towards(look.at, look))
         at = look.at
-        return _Found(
-            partial(self._finding, at),
-            lambda place: Face(self._towards(place, look)),
-        )
+        return _Found(partial(self._finding, at), lambda place: Face(self._towards(place, look)))
 
     def _go(self, move: str, movement: GoTo, here: Vector, *, through: bool) -> Duty:
         if not self._track:

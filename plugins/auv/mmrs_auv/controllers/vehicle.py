@@ -6,15 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import hypot, inf
 
 from auv_vessel.api import Craft, State
-from auv_vessel.decision.duties import (
-    NO_PROGRESS,
-    STALE,
-    Duty,
-    FailureError,
-    Stay,
-    Surface,
-    ThrusterNews,
-)
+from auv_vessel.decision.duties import NO_PROGRESS, STALE, Duty, FailureError, Stay, Surface, ThrusterNews
 from auv_vessel.decision.duty_control import (
     COMES_UP,
     CRASHED,

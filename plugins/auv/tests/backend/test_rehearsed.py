@@ -350,10 +350,7 @@ def test_a_vehicle_that_is_to_stay_where_it_begins_is_not_swept_away(tmp_path: P
     held = move("stay", "HoldPosition", duration=20.0)
     waits = {0: Transition(0, 1, waits=("go",))}
     other = robot_program(
-        "two",
-        [replace(held, after=(notify(("naiad", "go")),))],
-        home=(0.0, 9.0, -0.5),
-        type_name="Pool AUV",
+        "two", [replace(held, after=(notify(("naiad", "go")),))], home=(0.0, 9.0, -0.5), type_name="Pool AUV"
     )
     stays = dive(held) if begins == "holds" else dive(feedback_move(), slots=("go",), transitions=waits)
     behaviour = stays if begins == "holds" else replace(stays, robots=(*stays.robots, other))

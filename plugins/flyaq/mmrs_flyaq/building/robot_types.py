@@ -71,10 +71,7 @@ class RobotTypes:
         unknown, option = f"no robot type {name!r} is known", f"--type {quote(f'{name}=NAME')}"
         option = f"'mmrs migrate {option}'" if self.beside else option
         if otherwise in self.known:
-            return (
-                otherwise,
-                f"{unknown}; {otherwise!r} stands in for it: state its type by {option}",
-            )
+            return (otherwise, f"{unknown}; {otherwise!r} stands in for it: state its type by {option}")
         return name, f"{unknown}: {self.how(name)}, or state its type by {option}"
 
     def how(self, name: str) -> str:

@@ -131,11 +131,7 @@ def _of_absent(use: Use, type: str) -> Iterator[str]:
         yield f"absent: expected a number, not {said(use.absent)!r}"
 
 
-_ARTICLE = {
-    Sort.ATTRIBUTE: "an attribute",
-    Sort.CONTAINED: "contained",
-    Sort.REFERENCE: "a reference",
-}
+_ARTICLE = {Sort.ATTRIBUTE: "an attribute", Sort.CONTAINED: "contained", Sort.REFERENCE: "a reference"}
 
 
 def _of_others(use: Use, kind: str, structure: Structure) -> Iterator[str]:

@@ -9,9 +9,7 @@ from hypothesis import strategies as st
 
 FILES = ("orchard-mission.json", "orchard-context.json", "round.json", "drones.json")
 ROUNDS = settings(
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-    derandomize=True,
+    deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], derandomize=True
 )
 
 

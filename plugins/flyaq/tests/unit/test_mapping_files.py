@@ -165,11 +165,7 @@ FLYAQ = FLYAQ_2015.read_text(encoding="utf-8")
             'features.drones = { to = "robots", times = 2 }',
             "times: means nothing",
         ),
-        (
-            'name = "name"',
-            'name = { to = "name", distinct = true }',
-            "distinct: means nothing for name",
-        ),
+        ('name = "name"', 'name = { to = "name", distinct = true }', "distinct: means nothing for name"),
         ('giro = { to = "gyro"', 'giro = { to = "gps"', "gps: to: gps takes one value only, and giro goes"),
         (
             'crs = { to = "crs"',

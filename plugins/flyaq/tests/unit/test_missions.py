@@ -57,8 +57,7 @@ def test_numbers_written_as_texts_are_numbers(mission):
 def test_a_border_that_repeats_its_first_vertex_loses_the_repetition(orchard, mission, told):
     assert len(mission.tasks[0].shell) == 4
     assert told(
-        orchard,
-        "repeats the vertex beside it, so it is left out: shell Coordinate (latitude 46.0010;",
+        orchard, "repeats the vertex beside it, so it is left out: shell Coordinate (latitude 46.0010;"
     )
 
 
@@ -137,10 +136,7 @@ def test_an_obstacle_without_an_area_is_drawn_around_its_vertices(orchard, conte
     assert len(pole.shell) == 4
     north = max(vertex.latitude for vertex in pole.shell)
     assert (north - 46.004) * 111_320 == pytest.approx(1.0, abs=0.01)
-    assert told(
-        orchard,
-        "so one is drawn 1 m around its vertices: draw it again: shell (46.004, 11.004)",
-    )
+    assert told(orchard, "so one is drawn 1 m around its vertices: draw it again: shell (46.004, 11.004)")
 
 
 def test_a_greatest_height_of_zero_is_unlimited(orchard, context, told):

@@ -29,13 +29,7 @@ def charges_of(input: TargetInput) -> Mapping[str, Charge]:
     """Return the charges of all robots of a behaviour whose types state them, by robot."""
     program, types = input.program, input.types
     given = CheckInput(
-        program,
-        types,
-        input.robot_kinds,
-        input.move_kinds,
-        input.areas,
-        input.environment,
-        input.elements,
+        program, types, input.robot_kinds, input.move_kinds, input.areas, input.environment, input.elements
     )
     found = ((robot.id, _charge(robot, given)) for robot in program.robots if robot.type_name in types)
     return {robot: charge for robot, charge in found if charge is not None}

@@ -29,11 +29,7 @@ class Departures:
     """
 
     def __init__(
-        self,
-        link: Link,
-        vehicle: MavlinkVehicle,
-        signs: Signs,
-        answers: Callable[[str], bool],
+        self, link: Link, vehicle: MavlinkVehicle, signs: Signs, answers: Callable[[str], bool]
     ) -> None:
         """Look at a vehicle; `answers` returns whether the robot is to answer an event that happens now."""
         self.looking = self.taken = False

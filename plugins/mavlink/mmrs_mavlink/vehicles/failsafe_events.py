@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mmrs_runtime.faults import (
-    FENCE_BREACHED,
-    MOTOR_FAILED,
-    OBSTACLE,
-    POSITION_LOST,
-    VEHICLE_RESTARTED,
-)
+from mmrs_runtime.faults import FENCE_BREACHED, MOTOR_FAILED, OBSTACLE, POSITION_LOST, VEHICLE_RESTARTED
 
 if TYPE_CHECKING:
     from .telemetry import Telemetry

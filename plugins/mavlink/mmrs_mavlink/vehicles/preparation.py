@@ -105,13 +105,7 @@ def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rall
 
 
 def check_identity(
-    link: Link,
-    telemetry: Telemetry,
-    tolerance: float,
-    home: Place,
-    start: Place,
-    *,
-    resumed: bool = False,
+    link: Link, telemetry: Telemetry, tolerance: float, home: Place, start: Place, *, resumed: bool = False
 ) -> None:
     """Make sure that the vehicle is the robot's: the only one with its id, of its kind, where it is to stand.
 

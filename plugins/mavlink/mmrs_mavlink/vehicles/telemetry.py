@@ -66,11 +66,7 @@ RECENT_SECONDS = 5.0
 """Seconds for which a reported obstacle or breach counts."""
 
 IN_AIR = frozenset(
-    {
-        mavlink.MAV_LANDED_STATE_IN_AIR,
-        mavlink.MAV_LANDED_STATE_TAKEOFF,
-        mavlink.MAV_LANDED_STATE_LANDING,
-    }
+    {mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_TAKEOFF, mavlink.MAV_LANDED_STATE_LANDING}
 )
 OBSTACLE_METRES = 5.0
 CHARGE = {2: "low", 3: "critical", 4: "an emergency", 5: "failed", 6: "unhealthy"}

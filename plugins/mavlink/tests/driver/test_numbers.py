@@ -7,10 +7,7 @@ from mmrs_mavlink.services import items
 
 
 def test_numbers_are_those_of_the_library() -> None:
-    assert (ARDUPILOT.number, PX4.number) == (
-        mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
-        mavlink.MAV_AUTOPILOT_PX4,
-    )
+    assert (ARDUPILOT.number, PX4.number) == (mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_AUTOPILOT_PX4)
     assert (autopilot.MISSION, autopilot.RALLY) == (items.MISSION, items.RALLY)
     assert (autopilot.WAYPOINT, autopilot.LOITER_UNLIMITED, autopilot.LOITER_TIME, autopilot.LAND) == (
         mavlink.MAV_CMD_NAV_WAYPOINT,

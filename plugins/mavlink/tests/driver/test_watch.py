@@ -13,11 +13,7 @@ from mmrs_runtime.faults import FaultError
 
 @pytest.mark.parametrize(
     ("policy", "escapes", "told"),
-    [
-        ("EMERGENCY_AREA", (), True),
-        ("EMERGENCY_AREA", (("out", (OVERHEAD,)),), False),
-        ("RETURN", (), False),
-    ],
+    [("EMERGENCY_AREA", (), True), ("EMERGENCY_AREA", (("out", (OVERHEAD,)),), False), ("RETURN", (), False)],
 )
 def test_a_robot_that_has_no_way_to_an_emergency_area_says_so_before_it_moves(policy, escapes, told):
     said = []

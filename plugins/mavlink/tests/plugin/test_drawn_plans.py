@@ -171,10 +171,7 @@ def test_waypoints_are_runs_of_one_frame_where_the_height_of_home_is_not_known()
         (Geometry.POINT, "waypoint 4", "the ground"),
     ]
     assert [(each.what, each.reason) for each in drawing.left_out] == [
-        (
-            "line from item 1 to item 2",
-            "their heights are in frames 3 and 0, and that of home is not known",
-        ),
+        ("line from item 1 to item 2", "their heights are in frames 3 and 0, and that of home is not known"),
         ("line from item 3 to item 4", "their heights are in frames 5 and 10, and that of home is not known"),
     ]
 
@@ -198,10 +195,7 @@ def test_a_part_that_is_no_object_is_refused(key):
         (b'{"fileType": "Plan", "version": 9}', r"^a\.plan:1: plans of version 9 are not read"),
         (plan({"type": "SimpleItem"}), r"^a\.plan:\d+: item 1: a command and seven parameters are expected"),
         (plan(survey("survey", polygon=7)), r"^a\.plan:\d+: 'polygon' is not an array"),
-        (
-            plan(survey("survey", polygon=[[None, 8]])),
-            r"^a\.plan:\d+: .* null of position 1 is not a number",
-        ),
+        (plan(survey("survey", polygon=[[None, 8]])), r"^a\.plan:\d+: .* null of position 1 is not a number"),
         (plan(item(16, 0, 0, 0, 0, 100, 8, 5)), r"^a\.plan:\d+: waypoint 1: .* is not on the Earth"),
         (
             plan(geoFence={"circles": [{"circle": {"center": [47, 8], "radius": -1}}]}),
@@ -253,10 +247,7 @@ def test_lists_of_fences_and_rally_points_are_shapes():
         (b"QGC WPL 120\n", r"^a\.waypoints:1: the first line is not 'QGC WPL 110'"),
         (listed("0 1 0 16"), r"^a\.waypoints:2: 4 values instead of 12"),
         (listed("0 1 0 x 0 0 0 0 47 8 400 1"), r"^a\.waypoints:2: 'x' is not a number"),
-        (
-            listed("0 1 0 1e999 0 0 0 0 47 8 400 1"),
-            r"^a\.waypoints:2: 1e999 cannot be the number of an item",
-        ),
+        (listed("0 1 0 1e999 0 0 0 0 47 8 400 1"), r"^a\.waypoints:2: 1e999 cannot be the number of an item"),
         (listed(HOME, "1 0 3 16 0 0 0 0 8.0 47.0 20 1"), r"^a\.waypoints:3: .* seem to be swapped"),
         (listed("0 0 0 5002 3 0 0 0 47 8 0 1"), r"^a\.waypoints:2: .* 3 corners of it are expected"),
     ],
@@ -300,8 +291,7 @@ def test_of_any_plan_every_item_is_in_the_account_or_it_is_refused(data):
 )
 def test_of_any_list_every_row_is_in_the_account_or_it_is_refused(rows):
     data = listed(
-        HOME,
-        *(f"{at} 0 {row[1]} {row[0]} 3 0 0 0 {row[2]} {row[3]} 9 1" for at, row in enumerate(rows, 1)),
+        HOME, *(f"{at} 0 {row[1]} {row[0]} 3 0 0 0 {row[2]} {row[3]} 9 1" for at, row in enumerate(rows, 1))
     )
     with suppress(UnreadableError):
         drawing = read_list(data, "a.waypoints")

@@ -18,11 +18,7 @@ FAR = robot_program("alpha", [take_off("up", 20.0), go_to("a", (60.0, 0.0, 20.0)
 
 def passing(x: float):
     """Return a robot that passes the square at its right side, so many metres from the origin."""
-    return robot_program(
-        "alpha",
-        [take_off("up", 20.0), go_to("a", (x, 30.0, 20.0))],
-        home=(x, -30.0, 0.0),
-    )
+    return robot_program("alpha", [take_off("up", 20.0), go_to("a", (x, 30.0, 20.0))], home=(x, -30.0, 0.0))
 
 
 def fenced(robot, area=YARD, clearance=1.0, error=0.0, escapes=()) -> Fence:
@@ -31,11 +27,7 @@ def fenced(robot, area=YARD, clearance=1.0, error=0.0, escapes=()) -> Fence:
 
 
 def test_only_what_is_forbidden_at_every_height_is_fenced():
-    others = [
-        replace(YARD, use=AreaUse.EMERGENCY),
-        replace(YARD, low=10.0),
-        replace(YARD, high=10.0),
-    ]
+    others = [replace(YARD, use=AreaUse.EMERGENCY), replace(YARD, low=10.0), replace(YARD, high=10.0)]
     assert len(fence_of(FAR, [YARD, *others], 1.0, 0.0)) == 1
 
 

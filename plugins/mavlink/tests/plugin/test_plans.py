@@ -100,10 +100,7 @@ def test_a_heading_is_a_region_of_interest_until_it_ends():
 @pytest.mark.parametrize(("properties", "looks"), [({"mavlink.gimbal": "1"}, [195, 195]), ({}, [])])
 def test_a_ground_vehicle_looks_by_its_gimbal_or_not_at_all(properties, looks):
     heading = Heading(MoveTarget((5.0, 5.0, 0.0)), "camera")
-    moves = [
-        go_to("a", (0.0, 30.0, 0.0), heading=heading),
-        replace(move("b", "HeadTo"), heading=heading),
-    ]
+    moves = [go_to("a", (0.0, 30.0, 0.0), heading=heading), replace(move("b", "HeadTo"), heading=heading)]
     camera = Device("camera", {}, properties)
     crawler = replace(quad(), metaclasses=(("urn:mmrs:robot:1.0", "Robot"),), devices={"camera": camera})
     given = target_input(program(robot_program("alpha", moves)), [crawler])

@@ -16,7 +16,4 @@ def test_a_policy_of_the_type_counts_where_mission_and_robot_say_nothing():
     type = replace(quad(), policies=(Policy("PEER_LOST", "LAND", 7.0), Policy("LINK_LOST", "LAND")))
     robot = replace(robot_program("a", []), policies=(Policy("LINK_LOST", "HOLD", 1.0),))
     given = replace(target_input(program(robot), [type]), robot_kinds={})
-    assert policies_of(robot, given) == (
-        Policy("LINK_LOST", "HOLD", 1.0),
-        Policy("PEER_LOST", "LAND", 7.0),
-    )
+    assert policies_of(robot, given) == (Policy("LINK_LOST", "HOLD", 1.0), Policy("PEER_LOST", "LAND", 7.0))

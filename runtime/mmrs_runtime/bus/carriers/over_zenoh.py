@@ -38,12 +38,7 @@ class ZenohCarrier:
     """Carries requests as queries, which the network answers from the owner itself."""
 
     def __init__(
-        self,
-        mission: str,
-        run: str,
-        robots: Sequence[str],
-        endpoints: Endpoints,
-        plan: str = "",
+        self, mission: str, run: str, robots: Sequence[str], endpoints: Endpoints, plan: str = ""
     ) -> None:
         """Keep what is needed to begin.
 

@@ -21,11 +21,7 @@ from mmrs_core.resources import shipped
 from mmrs_core.scene import Area, AreaUse
 
 EXAMPLES = shipped("examples")
-AREAS = {
-    "forbiddenAreas": "forbidden area",
-    "obstacles": "obstacle",
-    "emergencyAreas": "emergency area",
-}
+AREAS = {"forbiddenAreas": "forbidden area", "obstacles": "obstacle", "emergencyAreas": "emergency area"}
 PLACES = (("task", "tasks"), ("robot", "team/robots"), ("context element", "elements"))
 DAMAGED = ("carbon-dioxide", "solar-park", "lost-float")
 ROBOT = "robots/quad-650.xmi"

@@ -115,10 +115,7 @@ def test_nothing_in_the_map_comes_from_elsewhere(picture):
 def test_a_task_is_drawn_as_its_symbol_says(picture):
     root = parsed(map_of(picture))
     (area,) = with_class(root, "area")
-    assert (area.get("stroke"), tip(area)) == (
-        "#c2571a",
-        "field: photo grid, 0:11 to 0:31",
-    )
+    assert (area.get("stroke"), tip(area)) == ("#c2571a", "field: photo grid, 0:11 to 0:31")
     assert [icon.text for icon in with_class(root, "icon") if icon.get("fill") == "#c2571a"] == ["G\u00a0"]
 
 

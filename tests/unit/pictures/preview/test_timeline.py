@@ -64,10 +64,7 @@ def test_a_recharge_parts_the_stretches_of_a_task():
             ("work", 40.0),
         )
     )
-    assert list(stretches(bars)) == [
-        ("field", 0.0, 30.0),
-        ("field", 40.0, 50.0),
-    ]
+    assert list(stretches(bars)) == [("field", 0.0, 30.0), ("field", 40.0, 50.0)]
 
 
 def test_a_timeline_without_robots_is_still_a_picture(without_robots):

@@ -83,11 +83,7 @@ def missions_of(input: TargetInput) -> Iterator[PlannedMission]:
 
 
 def _mission(
-    context: VehicleContext,
-    input: TargetInput,
-    stem: str,
-    sortie: Sequence[PlanItem],
-    seconds: float | None,
+    context: VehicleContext, input: TargetInput, stem: str, sortie: Sequence[PlanItem], seconds: float | None
 ) -> PlannedMission:
     robot = context.robot
     points = rally_points_of(robot, input.program, input.types, input.areas).points

@@ -24,10 +24,7 @@ from mmrs_mavlink.plugin.plans.items import (
 AXES = "missions have the latitude first"
 SPLINE, LOITER_TURNS, LOITER_TO_ALTITUDE, ARC, PLACE_PAYLOAD = 82, 18, 31, 36, 94
 PASSED = frozenset(
-    (
-        *(WAYPOINT, SPLINE, ARC, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, LOITER_TO_ALTITUDE),
-        PLACE_PAYLOAD,
-    )
+    (*(WAYPOINT, SPLINE, ARC, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, LOITER_TO_ALTITUDE), PLACE_PAYLOAD)
 )
 """Commands whose place a vehicle goes to; one at latitude and longitude 0 is where it is."""
 WAITED = (LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, PLACE_PAYLOAD)

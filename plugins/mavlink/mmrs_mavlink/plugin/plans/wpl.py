@@ -15,14 +15,7 @@ from math import isinf
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_mavlink.plugin.capabilities import OF_LISTS, WIRINGS
 from mmrs_mavlink.plugin.context import templates_of
-from mmrs_mavlink.plugin.plans.items import (
-    ABSOLUTE,
-    FENCE_EXCLUSION,
-    RALLY_POINT,
-    RELATIVE,
-    WAYPOINT,
-    Row,
-)
+from mmrs_mavlink.plugin.plans.items import ABSOLUTE, FENCE_EXCLUSION, RALLY_POINT, RELATIVE, WAYPOINT, Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
 from mmrs_mavlink.plugin.plans.surroundings import PlannedMission, missions_of
 
