@@ -245,6 +245,7 @@ class Rates:
         if self.bound > 0:
             astern = 180.0 if facing is None else min(180.0, abs(turn(facing, along)) + UNSURE)
             late = max(self.circling, (1.0 + self.timing.spread) * self._behind(astern))
+            late += self.timing.hesitating if astern >= ASTERN else 0.0
             return self.shunting if away <= self.shunts_within else late
         if facing is None and not self.rounds:
             return self.shunting if away <= self.shunts_within else self.circling

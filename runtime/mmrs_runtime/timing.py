@@ -62,6 +62,7 @@ class LegTiming:
             out; up to these it turns while it sets out, which is not counted.
         closing: seconds in which what its target has gone ahead while it turned round becomes less by e; 0:
             that waits for it.
+        hesitating: seconds that it may drive on, at most, before it turns to a place straight behind.
         unlimited: how it takes legs where it does not keep the limits of the robot's type; None: as here.
         limited: how it takes them where it keeps them all; None: as here.
     """
@@ -98,6 +99,7 @@ class LegTiming:
     aside: float = 0.0
     pivots: float = inf
     closing: float = 0.0
+    hesitating: float = 0.0
     unlimited: LegTiming | None = None
     limited: LegTiming | None = None
 

@@ -86,6 +86,16 @@ def test_a_car_takes_longer_to_what_is_behind_it_as_was_measured(aside, seconds)
     assert rover.latest().from_stop_to_stop(*leg, facing=float(aside)) > seconds
 
 
+def test_a_car_on_a_mission_may_drive_on_before_it_turns_to_what_is_behind_it():
+    """ArduRover took 21.3 s for the first leg of 6 m back at 1 m/s, and 11.5 s for each of the others."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "rover")
+    rover = Rates(1.0, 1.0, 1.0, autopilot.mission, 36.0, 4.5, rounds=True, shunts_within=0.0, circling=7.54)
+    leg = ((0.0, 6.0, 0.0), (0.0, 0.0, 0.0))
+    assert rover.soonest().from_stop_to_stop(*leg, facing=0.0) < 11.5
+    assert rover.latest().from_stop_to_stop(*leg, facing=0.0) > 21.3
+    assert rover.latest().from_stop_to_stop(*leg, facing=90.0) < 21.3
+
+
 @pytest.mark.parametrize(
     ("metres", "aside", "seconds"), [(4.0, 180, 11.0), (14.0, 180, 23.4), (9.22, 139, 16.6), (10.0, 90, 14.6)]
 )
