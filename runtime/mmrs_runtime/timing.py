@@ -12,6 +12,9 @@ from math import exp, hypot, inf, log, sqrt
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
 
+BESIDE = 0.5
+"""Share of the thrust to its side for which a robot that slows down for corners waits."""
+
 RESTING = 0.3
 """Metres from its set-point within which a robot that trails it is as slow as one that stands still."""
 
@@ -143,8 +146,8 @@ class LegTiming:
     def lag_of(self, cruise: float, held: float, along: float, beside: float) -> float:
         """Return how much longer a long level leg takes that a robot begins with some thrust, seconds.
 
-        One that slows down for corners waits as long as it is beside its path, too; another one that has
-        stopped has lost some of its thrust.
+        One that slows down for corners waits while it is beside its path, too; another one that has stopped
+        has lost some of its thrust.
 
         Args:
             cruise: commanded, metres per second.
@@ -155,7 +158,7 @@ class LegTiming:
             return self.lag * max(0.0, 1.0 - held * along / cruise**2)
         if along >= held:
             return 0.0
-        return self.lag * hypot(held - along, beside) / (held + self.lag_halved)
+        return self.lag * hypot(held - along, BESIDE * beside) / (held + self.lag_halved)
 
     def passing(self, aside: float, onward: float, rise: float) -> float:
         """Return how fast it is at a place that it slows down for, metres per second; 0: it stops there.
