@@ -7,13 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
-from mmrs_core.analysis.figures import (
-    MissingFigureError,
-    kinematics_of,
-    move_kind_of,
-    seconds_of,
-    type_of,
-)
+from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, move_kind_of, seconds_of, type_of
 from mmrs_core.analysis.motion import Motion, MovePath
 from mmrs_core.analysis.verdicts import UnknownMove
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram, SlotId

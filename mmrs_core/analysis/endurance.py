@@ -12,13 +12,7 @@ from collections.abc import Iterator
 from itertools import islice
 from math import ceil, dist, inf
 
-from mmrs_core.analysis.figures import (
-    MissingFigureError,
-    capability_of,
-    home_of,
-    kinematics_of,
-    type_of,
-)
+from mmrs_core.analysis.figures import MissingFigureError, capability_of, home_of, kinematics_of, type_of
 from mmrs_core.analysis.motion import MovePath, motions
 from mmrs_core.analysis.sorties import RECHARGE, ChargeUse, Sorties, sorties_of
 from mmrs_core.analysis.verdicts import (

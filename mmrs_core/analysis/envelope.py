@@ -8,14 +8,7 @@ from math import isfinite
 from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, type_of
 from mmrs_core.analysis.motion import Motion, MovePath, motions
 from mmrs_core.analysis.states import GROUNDED, States, possible_states, states_of
-from mmrs_core.analysis.verdicts import (
-    TOLERANCE,
-    Margin,
-    for_each_robot,
-    judged,
-    not_checked,
-    unknown,
-)
+from mmrs_core.analysis.verdicts import TOLERANCE, Margin, for_each_robot, judged, not_checked, unknown
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.contributions.rules import robot_kind_of

@@ -5,14 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.analysis.figures import capability_of, type_of
-from mmrs_core.analysis.verdicts import (
-    Margin,
-    for_each_robot,
-    judged,
-    not_checked,
-    safe,
-    violated,
-)
+from mmrs_core.analysis.verdicts import Margin, for_each_robot, judged, not_checked, safe, violated
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, RobotProgram
 from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict

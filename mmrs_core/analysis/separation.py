@@ -17,13 +17,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import dist, inf
 
-from mmrs_core.analysis.encounters import (
-    Encounter,
-    ProvenOrder,
-    apart,
-    certain_encounter,
-    nearest_encounter,
-)
+from mmrs_core.analysis.encounters import Encounter, ProvenOrder, apart, certain_encounter, nearest_encounter
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.analysis.motion import motions
 from mmrs_core.analysis.nearness import legs_of, near_pairs

@@ -35,12 +35,7 @@ class Passages:
     """
 
     def __init__(
-        self,
-        robot: RobotProgram,
-        move_kinds: Mapping[Name, MoveKind],
-        kinematics: Kinematics,
-        *,
-        local: bool,
+        self, robot: RobotProgram, move_kinds: Mapping[Name, MoveKind], kinematics: Kinematics, *, local: bool
     ) -> None:
         """Find the runs of a robot.
 
@@ -113,11 +108,7 @@ class Passages:
         return before
 
     def ahead(
-        self,
-        move: Move,
-        path: tuple[Position, ...],
-        before: Passage | None = None,
-        push: Push | None = None,
+        self, move: Move, path: tuple[Position, ...], before: Passage | None = None, push: Push | None = None
     ) -> Passage | None:
         """Return what a robot saves that need not stop at the end of a move; None: it stops there.
 

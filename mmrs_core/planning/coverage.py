@@ -27,18 +27,7 @@ from mmrs_core.planning.patterns import Pattern, layers_of
 from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.planning.swaths import swaths
 from mmrs_core.planning.turnarounds import turned_around
-from mmrs_core.scene import (
-    ActionAt,
-    Area,
-    Coverage,
-    Point,
-    Repetition,
-    Ring,
-    Robot,
-    Scene,
-    Stroke,
-    Work,
-)
+from mmrs_core.scene import ActionAt, Area, Coverage, Point, Repetition, Ring, Robot, Scene, Stroke, Work
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
@@ -131,9 +120,7 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
     worth = shapely.to_wkb(GeometryCollection(_worth(target, closed)))
     shut = shapely.to_wkb(closed)
     layers = layers_of(
-        sweep.pattern,
-        sweep.start,
-        lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start),
+        sweep.pattern, sweep.start, lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start)
     )
     covered = Coverage(
         shell=tuple(shell),

@@ -91,10 +91,7 @@ class Obstacles:
         shapely.prepare(self.smaller)
         self._corners: list[Floats] | None = None
         boxes = shapely.bounds(self.smaller).reshape(-1, 2, 2)
-        self._boxes = (
-            np.column_stack([boxes[:, 0], self.low]),
-            np.column_stack([boxes[:, 1], self.high]),
-        )
+        self._boxes = (np.column_stack([boxes[:, 0], self.low]), np.column_stack([boxes[:, 1], self.high]))
         sides = np.diff(boxes, axis=1)
         self._piece = _SIDES * float(sides.mean()) if len(areas) else 1.0
         self._tree = shapely.STRtree(self.smaller)

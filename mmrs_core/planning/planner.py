@@ -18,14 +18,7 @@ from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
-from mmrs_core.planning.remedies import (
-    counted,
-    for_all_charges,
-    for_diversions,
-    for_times,
-    or_else,
-    too_long,
-)
+from mmrs_core.planning.remedies import counted, for_all_charges, for_diversions, for_times, or_else, too_long
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import (

@@ -114,12 +114,7 @@ class _Tour:
     """
 
     def __init__(
-        self,
-        first: Plane,
-        last: Plane,
-        origin: complex,
-        index: NDArray[np.intp],
-        flip: NDArray[np.bool_],
+        self, first: Plane, last: Plane, origin: complex, index: NDArray[np.intp], flip: NDArray[np.bool_]
     ) -> None:
         self._first, self._last, self._origin = first, last, origin
         self.index, self.flip = index, flip

@@ -50,11 +50,7 @@ class Curve(NamedTuple):
 
 
 def curve(
-    length: float,
-    speed: float,
-    limits: tuple[float, float, float],
-    enters: float = 0.0,
-    leaves: float = 0.0,
+    length: float, speed: float, limits: tuple[float, float, float], enters: float = 0.0, leaves: float = 0.0
 ) -> Curve:
     """Return how a leg is taken that begins and ends at steady speeds.
 

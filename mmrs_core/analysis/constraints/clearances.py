@@ -259,13 +259,7 @@ _MOVE_HOME = "move the home away, or make the area smaller"
 _MOVE_TASK = "move the task away, or make the area or its safetyDistance smaller"
 
 CONSTRAINTS = (
-    Constraint(
-        "MML080",
-        "Every robot keeps its clearance at home.",
-        (MISSION, "Robot"),
-        _home,
-        _MOVE_HOME,
-    ),
+    Constraint("MML080", "Every robot keeps its clearance at home.", (MISSION, "Robot"), _home, _MOVE_HOME),
     Constraint(
         "MML081",
         "The point of a task is one that some robot can be at.",

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mmrs_core.analysis.constraints.findings import (
-    BEHAVIOUR,
-    CONTEXT,
-    MISSION,
-    ROBOT,
-    finding,
-    repeats,
-)
+from mmrs_core.analysis.constraints.findings import BEHAVIOUR, CONTEXT, MISSION, ROBOT, finding, repeats
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import children, text
@@ -97,19 +90,9 @@ CONSTRAINTS = (
         "MML003", "Robots of a team have different names.", (MISSION, "Team"), _unique("robots"), _RENAME
     ),
     Constraint(
-        "MML008",
-        "A mission has one policy for an event.",
-        (MISSION, "Mission"),
-        _policies,
-        _ONE_POLICY,
+        "MML008", "A mission has one policy for an event.", (MISSION, "Mission"), _policies, _ONE_POLICY
     ),
-    Constraint(
-        "MML011",
-        "Names are human-readable.",
-        (MISSION, "NamedElement"),
-        _legible,
-        _READABLE,
-    ),
+    Constraint("MML011", "Names are human-readable.", (MISSION, "NamedElement"), _legible, _READABLE),
     Constraint(
         "CTX002",
         "Areas, corridors and elements of a context have different names.",
@@ -154,11 +137,7 @@ CONSTRAINTS = (
         "keep one value for each key",
     ),
     Constraint(
-        "RL016",
-        "A robot type has one policy for an event.",
-        (ROBOT, "Robot"),
-        _policies,
-        _ONE_POLICY,
+        "RL016", "A robot type has one policy for an event.", (ROBOT, "Robot"), _policies, _ONE_POLICY
     ),
     Constraint(
         "BL010", "Slots of a robot have different names.", (BEHAVIOUR, "Robot"), _unique("slots"), _RENAME
@@ -180,13 +159,7 @@ CONSTRAINTS = (
         _unique("parameters", "payload", key="key", word="key"),
         "keep one value for each key",
     ),
-    Constraint(
-        "BL048",
-        "A robot has one policy for an event.",
-        (BEHAVIOUR, "Robot"),
-        _policies,
-        _ONE_POLICY,
-    ),
+    Constraint("BL048", "A robot has one policy for an event.", (BEHAVIOUR, "Robot"), _policies, _ONE_POLICY),
     Constraint("BL034", "The name of a slot is human-readable.", (BEHAVIOUR, "Slot"), _legible, _READABLE),
     Constraint(
         "BL053",
@@ -196,11 +169,7 @@ CONSTRAINTS = (
         _READABLE,
     ),
     Constraint(
-        "BL041",
-        "A wait has one policy for an event.",
-        (BEHAVIOUR, "MoveTransition"),
-        _policies,
-        _ONE_POLICY,
+        "BL041", "A wait has one policy for an event.", (BEHAVIOUR, "MoveTransition"), _policies, _ONE_POLICY
     ),
     Constraint("MML013", "No required name of a mission is empty.", (MISSION, "Mission"), _empty, _GIVE),
     Constraint("RL028", "No required name of a robot type is empty.", (ROBOT, "Robot"), _empty, _GIVE),

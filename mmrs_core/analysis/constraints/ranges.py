@@ -7,13 +7,7 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import TypeAlias
 
-from mmrs_core.analysis.constraints.findings import (
-    BEHAVIOUR,
-    CONTEXT,
-    MISSION,
-    ROBOT,
-    called,
-)
+from mmrs_core.analysis.constraints.findings import BEHAVIOUR, CONTEXT, MISSION, ROBOT, called
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.grounding.features import number
 from mmrs_core.languages.element import Element, is_kind

@@ -9,13 +9,7 @@ from itertools import pairwise
 from mmrs_core.analysis.synchronisation.exploration import find_stuck
 from mmrs_core.analysis.synchronisation.fixpoint import Fixpoint, may_fixpoint, must_fixpoint
 from mmrs_core.analysis.synchronisation.network import NetNode, Network, groups_of, network_of
-from mmrs_core.analysis.synchronisation.search import (
-    LIMIT,
-    LimitExceededError,
-    Stuck,
-    Trap,
-    find_trap,
-)
+from mmrs_core.analysis.synchronisation.search import LIMIT, LimitExceededError, Stuck, Trap, find_trap
 from mmrs_core.behaviour.program import Program, SlotId
 from mmrs_core.behaviour.walk import moves_reaching_stop, reachable_moves
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict

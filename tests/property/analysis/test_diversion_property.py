@@ -53,8 +53,7 @@ def test_a_diversion_takes_little_longer_than_along_the_shortest_path(boxes):
     walls = [square(f"wall {k}", (e, n), h, distance=d) for k, (e, n, h, d) in enumerate(boxes)]
     assume(all(max(abs(e - x), abs(n)) > h + d + KEPT + 1.0 for e, n, h, d in boxes for x in (0.0, 300.0)))
     verdict = finding(
-        "diversion",
-        given(robot("a", [hold("h", 1.0)]), areas=(goal, *walls), rally_points={"a": (GOAL,)}),
+        "diversion", given(robot("a", [hold("h", 1.0)]), areas=(goal, *walls), rally_points={"a": (GOAL,)})
     )
     # between boxes that leave a gap of hardly twice the distance, no path need be found
     if verdict.status is Status.SAFE:

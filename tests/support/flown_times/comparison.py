@@ -126,11 +126,7 @@ def compared(
 
 
 def _steps(
-    flight: str,
-    modelled: Modelled,
-    log: Path,
-    track: Sequence[Sample],
-    without: Container[tuple[str, str]],
+    flight: str, modelled: Modelled, log: Path, track: Sequence[Sample], without: Container[tuple[str, str]]
 ) -> Comparison:
     """Return the comparison of a robot that was commanded step by step, runs as missions."""
     robot = modelled.robot

@@ -59,11 +59,7 @@ REEF = ((0.0, 20.0, -3.0), (15.0, 20.0, -5.0), (15.0, 0.0, -5.0), (0.0, 0.0, -3.
 
 def _short(craft: Craft, *policies: tuple[str, str, float], stays: float = 0.0, fluid: bool = False) -> Route:
     """Return a short route of a class of vehicle."""
-    places, speed = {
-        COPTER: (SQUARE, 5.0),
-        ROVER: (YARD, 1.5),
-        SUB: (REEF, 0.8),
-    }[craft]
+    places, speed = {COPTER: (SQUARE, 5.0), ROVER: (YARD, 1.5), SUB: (REEF, 0.8)}[craft]
     name = {COPTER: "Alba", ROVER: "Badger", SUB: "Nereid"}[craft]
     return Route(name, craft, places, speed, fluid=fluid, stays=stays, policies=policies)
 

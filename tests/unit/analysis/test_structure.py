@@ -27,9 +27,7 @@ def test_a_second_stop_is_violated():
     made = robot("a", MOVES)
     assert faults(
         replace(made, moves=(*made.moves[:-2], replace(made.moves[-1], id="end"), made.moves[-1]))
-    ) == [
-        "a: it has 2 Stop moves instead of exactly one",
-    ]
+    ) == ["a: it has 2 Stop moves instead of exactly one"]
 
 
 def test_a_loop_that_never_ends_is_violated_move_by_move():
@@ -84,10 +82,7 @@ def test_two_moves_of_one_name_are_violated():
 def test_a_move_that_is_never_reached_is_named_but_harmless():
     made = robot("a", [hold("one"), go("dead", (1.0, 0.0, 0.0)), hold("two")], jumps={"one": "two"})
     verdict = finding("structure", given(made))
-    assert (verdict.status, verdict.message) == (
-        Status.SAFE,
-        "a: every move is on a path from Start to Stop",
-    )
+    assert (verdict.status, verdict.message) == (Status.SAFE, "a: every move is on a path from Start to Stop")
 
 
 def test_a_task_that_is_never_reached_is_violated():

@@ -3,15 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from plain_scenes import (
-    box,
-    road,
-    robot,
-    scene,
-    task,
-    visit,
-    with_kinematics,
-)
+from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
 from sound_plans import sound, steps_of
 
 from mmrs_core.errors import InfeasibleError

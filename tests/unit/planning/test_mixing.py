@@ -71,9 +71,7 @@ def test_each_point_is_done_by_one_robot_whose_device_has_another_name():
         for each in team(10.0, 5.0)
     )
     whole = scene(
-        robots,
-        {"a": {each.name: points(12, each.name) for each in robots}},
-        tasks={"a": task("a", wanted=2)},
+        robots, {"a": {each.name: points(12, each.name) for each in robots}}, tasks={"a": task("a", wanted=2)}
     )
     found = plan(whole)
     places = [stroke.points[0] for each in robots for stroke in strokes(found, each.name)]

@@ -29,12 +29,7 @@ def test_a_sound_plan_has_no_complaints():
 
 @pytest.mark.parametrize(
     ("kind", "words"),
-    [
-        (Signal, "waits for ever"),
-        (Serve, "is not done"),
-        (Transit, "begins at"),
-        (Recover, "never lands"),
-    ],
+    [(Signal, "waits for ever"), (Serve, "is not done"), (Transit, "begins at"), (Recover, "never lands")],
 )
 def test_a_missing_step_is_seen(kind, words):
     assert any(words in fault for fault in complaints(WHOLE, without(plan(WHOLE), kind)))

@@ -54,7 +54,7 @@ ARDUPILOT = Autopilot(
     "mmrs_mavlink.vehicles.guidance:ArduPilotGuidance",
     streamed={"EKF_STATUS_REPORT": 1.0, "FENCE_STATUS": 1.0, "WIND": 1.0},
     missions=Missions(
-        starts_itself=("MIS_RESTART", "the vehicle would begin every run with the first item of its mission"),
+        starts_itself=("MIS_RESTART", "the vehicle would begin every run with the first item of its mission")
     ),
     keeping=Keeping(
         {
@@ -186,11 +186,7 @@ COPTER_SAFEGUARDS = (
 
 ROVER_SAFEGUARDS = (
     Safeguard("FS_GCS_ENABLE", "no heartbeats from the ground", {0: "nothing", 1: "as FS_ACTION says"}),
-    Safeguard(
-        "FS_ACTION",
-        "link lost",
-        {0: "nothing", 1: "return", 2: "hold", 3: "SmartRTL", 5: "disarm"},
-    ),
+    Safeguard("FS_ACTION", "link lost", {0: "nothing", 1: "return", 2: "hold", 3: "SmartRTL", 5: "disarm"}),
     Safeguard("FS_THR_ENABLE", "no signal from the pilot's remote control", {0: "nothing"}, {0: NOTHING}),
     Safeguard("BATT_FS_LOW_ACT", "battery low", {0: "nothing", 1: "return", 2: "hold"}, {0: NOTHING}),
     Safeguard("FENCE_ENABLE", "the fence", {0: "off", 1: "on"}),

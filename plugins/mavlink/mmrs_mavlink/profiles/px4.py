@@ -207,11 +207,7 @@ LOST_LINK = LostLinkFailsafe(
             2: frozenset({HOLDS, RETURNS, LANDS}),
             3: frozenset({HOLDS, LANDS}),
         },
-        ON_STILLNESS: {
-            3: frozenset({RETURNS, LANDS}),
-            4: frozenset({LANDS}),
-            5: frozenset({HOLDS}),
-        },
+        ON_STILLNESS: {3: frozenset({RETURNS, LANDS}), 4: frozenset({LANDS}), 5: frozenset({HOLDS})},
     },
     delay=Delay("COM_DL_LOSS_T", 5.0, 300.0),
     set_point_delay=Delay("COM_OF_LOSS_T", 5.0, 60.0, usual=5.0),

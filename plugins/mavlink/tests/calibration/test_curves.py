@@ -25,11 +25,7 @@ def speeds_of(top, acceleration, jerk, rate, noise=0.0):
 
 @pytest.mark.parametrize("rate", RATES)
 @settings(max_examples=10, deadline=None)
-@given(
-    top=st.floats(4.0, 15.0),
-    acceleration=st.floats(1.0, 3.0),
-    share=st.floats(2.0, 8.0),
-)
+@given(top=st.floats(4.0, 15.0), acceleration=st.floats(1.0, 3.0), share=st.floats(2.0, 8.0))
 def test_a_curve_is_found_again_from_samples_of_any_rate(rate, top, acceleration, share):
     jerk = share * acceleration**2 / top
     times, speeds = speeds_of(top, acceleration, jerk, rate)
@@ -64,11 +60,7 @@ def test_a_jump_is_no_curve():
 
 
 @settings(deadline=None)
-@given(
-    speed=st.floats(0.1, 20.0),
-    acceleration=st.floats(0.5, 5.0),
-    jerk=st.floats(0.1, 50.0),
-)
+@given(speed=st.floats(0.1, 20.0), acceleration=st.floats(0.5, 5.0), jerk=st.floats(0.1, 50.0))
 def test_the_seconds_of_a_ramp_are_those_of_its_integral(speed, acceleration, jerk):
     step = 0.01
     speeds = ramp(speed, acceleration, jerk, step)

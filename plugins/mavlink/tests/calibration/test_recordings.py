@@ -53,10 +53,7 @@ def test_wind_changes_the_figures_little(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "robot", "flown_as", "acceleration"),
-    [
-        ("rover-long-legs-guided", "Badger", "STEP", 1.0),
-        ("sub-auto", "Nereid", "MISSION", 0.7),
-    ],
+    [("rover-long-legs-guided", "Badger", "STEP", 1.0), ("sub-auto", "Nereid", "MISSION", 0.7)],
 )
 def test_rovers_and_submarines_have_figures_too(name, robot, flown_as, acceleration, tmp_path):
     found = figures(name, robot, tmp_path)

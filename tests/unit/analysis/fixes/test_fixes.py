@@ -40,12 +40,7 @@ SPOILT = {
     "MML004": (DAM, "mission.xmi", 'type="Camera drone">', 'type="camera-drone">'),
     "MML005": (DAM, "mission.xmi", 'reserve="0.3"', 'reserve="30"'),
     "MML012": (DAM, "mission.xmi", 'acceptedUnknowns="clearance" name', 'acceptedUnknowns="clearence" name'),
-    "MML027": (
-        PARK,
-        "context.xmi",
-        'latitude="{0}" longitude="{1}"',
-        'latitude="{1}" longitude="{0}"',
-    ),
+    "MML027": (PARK, "context.xmi", 'latitude="{0}" longitude="{1}"', 'latitude="{1}" longitude="{0}"'),
     "MML029": (PARK, "context.xmi", 'latitude="42.369802"', 'latitude="-42.369802"'),
     "MML030": (PARK, "context.xmi", 'longitude="13.349126"', 'longitude="-13.349126"'),
     "MML041": (DAM, "mission.xmi", WAY, f'{WAY}  <taskDependencies from="//@tasks.3" to="//@tasks.3"/>\n'),
