@@ -25,7 +25,7 @@ from mmrs_runtime.s_curves import (
     stop_to_stop,
     turning,
 )
-from mmrs_runtime.timing import IDEAL, LegTiming, half_turn
+from mmrs_runtime.timing import IDEAL, LEFT, LegTiming, half_turn
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -441,7 +441,7 @@ class Rates:
     def push(self, start: Position, end: Position, before: Push | None) -> Push | None:
         """Return the push that is left after a leg, which grows by the time constant of the lag.
 
-        Of what is to the side, a robot keeps some that does not stop.
+        A robot that stops loses some, and what is to the side.
 
         Args:
             start, end: of the leg.
@@ -453,7 +453,7 @@ class Rates:
         gone = exp(-self._stopping(start, end)[0] / self.timing.lag_within)
         held, (along, beside) = self._held(start, end), _split(start, end, before or STANDING)
         along = held - (held - along) * gone
-        beside = beside * gone if self.timing.slows_down else 0.0
+        along, beside = (along, beside * gone) if self.timing.slows_down else (LEFT * along, 0.0)
         return ((along * east - beside * north) / level, (along * north + beside * east) / level)
 
     def _stopping(self, start: Position, end: Position) -> tuple[float, float]:

@@ -15,6 +15,9 @@ SETTLED = 0.5
 BESIDE = 0.5
 """Share of the thrust to its side for which a robot that slows down for corners waits."""
 
+LEFT = 0.8
+"""Share of its thrust that is left where a robot has stopped."""
+
 RESTING = 0.3
 """Metres from its set-point within which a robot that trails it is as slow as one that stands still."""
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
 from mmrs_runtime.s_curves import curve, speeding, turning
-from mmrs_runtime.timing import LegTiming, half_turn
+from mmrs_runtime.timing import LEFT, LegTiming, half_turn
 
 Vector = tuple[float, float, float]
 
@@ -298,9 +298,9 @@ class Body:
             return self._push
         gone = exp(-leg.duration / self.figures.lag_within)
         held, (along, beside) = self._held(leg), _split(leg, self._push)
-        along = (held - (held - along) * gone) / level
-        beside = beside * gone / level if self.figures.slows_down else 0.0
-        north, east, _ = leg.path
+        along = held - (held - along) * gone
+        along, beside = (along, beside * gone) if self.figures.slows_down else (LEFT * along, 0.0)
+        north, east = leg.path[0] / level, leg.path[1] / level
         return (along * north - beside * east, along * east + beside * north, 0.0)
 
     def _held(self, leg: CurvedLeg) -> float:

@@ -468,6 +468,17 @@ def test_an_underwater_vehicle_loses_the_thrust_of_a_fast_leg_on_a_slow_one_back
     assert back == pytest.approx(48.9, rel=0.1)
 
 
+def test_legs_in_line_of_an_underwater_vehicle_lag_at_each_stop():
+    """ArduSub took 16.1, 15.6, 15.4 and 16.2 s for legs of 12 m at 1 m/s in line."""
+    figures = ARDUSUB.pacing.mission
+    assert figures is not None
+    rates, push, found = Rates(1.0, figures.climb, figures.descent, figures), STANDING, []
+    for leg in pairwise((0.0, 12.0 * index, -3.0) for index in range(6)):
+        found.append(rates.from_stop_to_stop(*leg, push=push))
+        push = rates.push(*leg, push)
+    assert mean(found[1:]) == pytest.approx(15.8, rel=0.03)
+
+
 def test_a_stop_takes_until_the_next_heartbeat():
     """Measured: up to 1.7 s."""
     found = bounds()
