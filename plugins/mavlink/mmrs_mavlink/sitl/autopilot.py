@@ -235,8 +235,6 @@ class SimulatedAutopilot:
         body.speed = self._value(LARGEST) if guided else (speeds or [self.usual_speed()])[-1]
         body.climb, body.descent = self._value(self.settings.profile.climbs), self.usual_descent()
         body.turn_rate = min(self._value(self.settings.profile.yaw_rates), pacing.turn_rate)
-        if isinstance(body, Car):
-            body.steers = one_by_one
 
     def usual_speed(self) -> float:
         """Return the default speed, metres per second."""
