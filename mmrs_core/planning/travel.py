@@ -333,31 +333,18 @@ class Travel:
         soonest, rates, latest = self.bounds(speed)
         quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop
         legs = list(pairwise(points))
-        longest = [latest.from_stop_to_stop(*leg) for leg in legs]
-        most = 0.0
-        for run in self._runs(points, speed):
+        passes = self.kinematics.turning_radius > 0.0 or self.entries or self.exits
+        uploaded = self.uploaded(speed) if len(legs) > 1 and passes else None
+        if uploaded is not None:
+            most = sum(max(latest.from_stop_to_stop(*leg), uploaded.from_stop_to_stop(*leg)) for leg in legs)
             most += (1.0 + self.kinematics.timing.spread) * self.kinematics.noticing
-            for i in run:
-                longest[i] = max(longest[i], self._in_mission(legs[i], speed))
+        else:
+            most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
         return MoveSeconds(
             sum(quickest(*leg) for leg in legs),
             sum(rates.from_stop_to_stop(*leg) for leg in legs),
-            most + sum(longest),
+            most,
         )
-
-    def _runs(self, points: tuple[Position, ...], speed: float | None) -> Iterator[range]:
-        """Yield the legs between stops of which several may be flown as one mission."""
-        if self.uploading is None or not (self.kinematics.turning_radius > 0.0 or self.entries or self.exits):
-            return
-        corners = zip(points, points[1:], points[2:], strict=False)
-        halts = [i for i, each in enumerate(corners, 1) if not self.uploading.may_pass(*each, speed)]
-        for begin, end in pairwise([0, *halts, len(points) - 1]):
-            if end - begin > 1:
-                yield range(begin, end)
-
-    def _in_mission(self, leg: tuple[Position, Position], speed: float | None) -> float:
-        uploaded = self.uploaded(speed)
-        return 0.0 if uploaded is None else uploaded.from_stop_to_stop(*leg)
 
     def _upright(self, seconds: float, route: Route | None = None) -> MoveSeconds:
         """Return how long launching or landing takes, and a route before or after that."""
