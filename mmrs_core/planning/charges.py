@@ -61,13 +61,10 @@ class Charges:
         }
 
     def _longest(self, robot: str, step: Step) -> float:
-        pilot = self._pilots[robot]
-        if isinstance(step, Transit):
-            return pilot.travel.going(step.route, step.speed).longest
         if not isinstance(step, Serve):
             return 0.0
         beside = self._beside.get(id(step.stroke), BESIDE)
-        return paced((step.stroke,), pilot, 1, beside)[0][1]
+        return paced((step.stroke,), self._pilots[robot], 1, beside)[0][1]
 
     def _of(self, plan: Plan, names: Collection[str]) -> dict[str, list[tuple[float, float]]]:
         """Return, by robot and sortie, the seconds used and what a diversion from its end takes longer."""
