@@ -240,7 +240,7 @@ class Kinematics:
     @property
     def room(self) -> float:
         """Return the metres by which its paths keep more than its clearance: to turn, and to stop late."""
-        return self.turning_radius + self.timing.overshoot * self.fastest
+        return self.turning_radius + self.timing.overshoot * self.cruise
 
     @property
     def shunting(self) -> float:
