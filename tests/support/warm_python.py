@@ -290,10 +290,9 @@ def run(arguments: list[str]) -> None:
 
 if __name__ == "__main__":
     if (shared.folder() / "plans").is_dir():
-        from plans_once import remember_plans, remember_plugins
+        from plans_once import remember_plans
 
         remember_plans()
-        remember_plugins()
     sys.path.remove(str(Path(__file__).parent))
     import_everything()
     gc.freeze()
