@@ -341,9 +341,7 @@ class Travel:
         else:
             most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
         return MoveSeconds(
-            sum(quickest(*leg) for leg in legs),
-            sum(rates.from_stop_to_stop(*leg) for leg in legs),
-            most,
+            sum(quickest(*leg) for leg in legs), sum(rates.from_stop_to_stop(*leg) for leg in legs), most
         )
 
     def _upright(self, seconds: float, route: Route | None = None) -> MoveSeconds:
