@@ -446,15 +446,21 @@ def _powers(flight: Flight) -> Iterator[float]:
 
 
 def _lifetime(flight: Flight, capacity: float | None) -> tuple[tuple[float, ...], str]:
-    """Return how long a full battery lasts, by its capacity and the current, or else by its charge."""
+    """Return how long a full battery lasts, by its capacity and the current, or else by its charge.
+
+    Its charge is a share of the capacity that the autopilot states, which need not be that of the type.
+    """
     taken = flight.power[in_flight(flight, flight.power[:, 0])]
-    if capacity is None:
-        capacity = flight.parameters.get("BATT_CAPACITY", 0.0) * COULOMBS
-    if len(taken) >= FEWEST and capacity > 0.0 and (current := float(taken[:, 2].mean())) > 0.0:
-        return (capacity / current,), ""
+    stated = flight.parameters.get("BATT_CAPACITY", 0.0) * COULOMBS
+    known = stated if capacity is None else capacity
+    if len(taken) >= FEWEST and known > 0.0 and (current := float(taken[:, 2].mean())) > 0.0:
+        return (known / current,), ""
     charges = flight.charges[in_flight(flight, flight.charges[:, 0])]
     if len(charges) and (charges[:, 1] - np.minimum.accumulate(charges[:, 1])).max() > CHARGED:
         return (), "it was charged, or its battery changed, in between: take the log of one sortie"
     if len(charges) >= 2 and (used := float(charges[0, 1] - charges[-1, 1])) >= 0.1:
-        return (float(charges[-1, 0] - charges[0, 0]) / used,), ""
+        if capacity is not None and not stated:
+            return (), "no current, and not of which capacity its charge is a share (BATT_CAPACITY)"
+        share = 1.0 if capacity is None else capacity / stated
+        return (share * float(charges[-1, 0] - charges[0, 0]) / used,), ""
     return (), "no current with the battery's capacity (BATT_CAPACITY), and no tenth of a charge was used"

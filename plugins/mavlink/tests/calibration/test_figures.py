@@ -226,6 +226,22 @@ def test_power_tells_how_long_the_battery_lasts(tmp_path):
     assert found["", "lifetime"].median == pytest.approx(16.0 * 3600.0 / (444.0 / 22.2), rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("capacity", "stated", "seconds"),
+    [(None, None, 100.0), (36_000.0, 10_000.0, 100.0), (36_000.0, 100_000.0, 10.0), (36_000.0, None, None)],
+)
+def test_a_charge_is_a_share_of_the_capacity_that_the_autopilot_states(tmp_path, capacity, stated, seconds):
+    """One ten times as large as the type's would otherwise last ten times as long."""
+    (tmp_path / "flight").write_bytes(telemetry([*_round_a_corner(5.0, 5.0)]))
+    flight = flight_in(tmp_path / "flight")
+    times = np.array([flight.times[0] + 1.0, flight.times[-1] - 1.0])
+    charges = np.column_stack([times, [1.0, 1.0 - (times[1] - times[0]) / 100.0]])
+    parameters = {} if stated is None else {"BATT_CAPACITY": stated}
+    drained = replace(flight, charges=charges, power=flight.power[:0], parameters=parameters)
+    found = next(each for each in figures_of([drained], capacity) if each.name == "lifetime")
+    assert found.values == (() if seconds is None else (pytest.approx(seconds),))
+
+
 @pytest.mark.parametrize(("charges", "lasts"), [((1.0, 0.7, 0.4), True), ((1.0, 0.5, 1.0, 0.9), False)])
 def test_a_log_of_a_battery_that_was_charged_in_between_does_not_tell_how_long_it_lasts(
     tmp_path, charges, lasts
