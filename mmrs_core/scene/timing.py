@@ -25,7 +25,7 @@ from mmrs_runtime.s_curves import (
     stop_to_stop,
     turning,
 )
-from mmrs_runtime.timing import IDEAL, LEFT, LegTiming, half_turn
+from mmrs_runtime.timing import IDEAL, LegTiming, half_turn, split
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -282,7 +282,7 @@ class Rates:
         after: Leg,
         entered: Passage | None = None,
         onward: Rates | None = None,
-        push: Push | None = STANDING,
+        push: Push | None = None,
     ) -> Passage:
         """Return what a robot saves that passes where one leg ends and another begins.
 
@@ -439,22 +439,17 @@ class Rates:
         return speed * level / length
 
     def push(self, start: Position, end: Position, before: Push | None) -> Push | None:
-        """Return the push that is left after a leg, which grows by the time constant of the lag.
-
-        A robot that stops loses some, and what is to the side.
+        """Return the push that is left after a leg (`LegTiming.pushed`).
 
         Args:
             start, end: of the leg.
             before: with which it began; None: not known.
         """
         east, north = end[0] - start[0], end[1] - start[1]
-        if not self.timing.lag or (level := hypot(east, north)) <= LEVEL:
+        if not self.timing.lag or hypot(east, north) <= LEVEL:
             return before if self.timing.lag else None
-        gone = exp(-self._stopping(start, end)[0] / self.timing.lag_within)
-        held, (along, beside) = self._held(start, end), _split(start, end, before or STANDING)
-        along = held - (held - along) * gone
-        along, beside = (along, beside * gone) if self.timing.slows_down else (LEFT * along, 0.0)
-        return ((along * east - beside * north) / level, (along * north + beside * east) / level)
+        seconds = self._stopping(start, end)[0]
+        return self.timing.pushed(before or STANDING, (east, north), self._held(start, end), seconds)
 
     def _stopping(self, start: Position, end: Position) -> tuple[float, float]:
         """Return the seconds of a leg from a stop to a stop, and its largest speed."""
@@ -515,12 +510,8 @@ def _half_turn(before: _Way, after: _Way) -> float | None:
 
 
 def _split(start: Position, end: Position, push: Push) -> tuple[float, float]:
-    """Return how much of a push is along a leg, and to its left; 0 for one that goes straight up or down."""
-    east, north = end[0] - start[0], end[1] - start[1]
-    level = hypot(east, north)
-    if level <= LEVEL:
-        return 0.0, 0.0
-    return (east * push[0] + north * push[1]) / level, (east * push[1] - north * push[0]) / level
+    """Return how much of a push is along a leg, and to its side."""
+    return split(push, (end[0] - start[0], end[1] - start[1]))
 
 
 def _rounded(away: float, aside: float, radius: float) -> float:

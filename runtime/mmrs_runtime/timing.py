@@ -163,6 +163,24 @@ class LegTiming:
             return 0.0
         return self.lag * hypot(held - along, BESIDE * beside) / (held + self.lag_halved)
 
+    def pushed(
+        self, push: tuple[float, float], way: tuple[float, float], held: float, seconds: float
+    ) -> tuple[float, float]:
+        """Return the thrust that is left after a level leg; it grows by the time constant of the lag.
+
+        A robot that stops loses some, and what is to the side.
+
+        Args:
+            push: with which it began, as the speed that this holds, metres per second on two level axes.
+            way: of the leg, on these axes, metres; not nothing.
+            held: speed on the leg that drag is to be overcome for, metres per second. seconds: of the leg.
+        """
+        gone, (along, beside) = exp(-seconds / self.lag_within), split(push, way)
+        along = held - (held - along) * gone
+        along, beside = (along, beside * gone) if self.slows_down else (LEFT * along, 0.0)
+        one, two = (each / hypot(*way) for each in way)
+        return (along * one - beside * two, along * two + beside * one)
+
     def passing(self, aside: float, onward: float, rise: float) -> float:
         """Return how fast it is at a place that it slows down for, metres per second; 0: it stops there.
 
@@ -192,6 +210,14 @@ class LegTiming:
         At a steady acceleration that is v² / 2a, and never more than the radius.
         """
         return min(self.corner_radius, speed * speed / (2.0 * min(self.acceleration, self.braking)))
+
+
+def split(push: tuple[float, float], way: tuple[float, float]) -> tuple[float, float]:
+    """Return how much of a push is along a way, and to its side; nothing where the way is none."""
+    (one, two), length = way, hypot(*way)
+    if length <= 0.0:
+        return 0.0, 0.0
+    return (one * push[0] + two * push[1]) / length, (one * push[1] - two * push[0]) / length
 
 
 def half_turn(before: Sequence[float], after: Sequence[float]) -> float | None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from math import atan2, cos, degrees, exp, hypot, inf, radians, sin, sqrt
 
 from mmrs_runtime.s_curves import curve, speeding, turning
-from mmrs_runtime.timing import LEFT, LegTiming, half_turn
+from mmrs_runtime.timing import LegTiming, half_turn, split
 
 Vector = tuple[float, float, float]
 
@@ -296,12 +296,7 @@ class Body:
         level = hypot(*leg.path[:2])
         if not level or not self.figures.lag:
             return self._push
-        gone = exp(-leg.duration / self.figures.lag_within)
-        held, (along, beside) = self._held(leg), _split(leg, self._push)
-        along = held - (held - along) * gone
-        along, beside = (along, beside * gone) if self.figures.slows_down else (LEFT * along, 0.0)
-        north, east = leg.path[0] / level, leg.path[1] / level
-        return (along * north - beside * east, along * east + beside * north, 0.0)
+        return (*self.figures.pushed(self._push[:2], leg.path[:2], self._held(leg), leg.duration), 0.0)
 
     def _held(self, leg: CurvedLeg) -> float:
         """Return the largest level speed on a leg; the mean one where places may be passed."""
@@ -325,7 +320,7 @@ class Body:
             passes=leaves is not None,
         )
         if figures.lag and path[:2] != (0.0, 0.0):
-            leg.lag = figures.lag_of(self._fastest_level, self._held(leg), *_split(leg, self._push))
+            leg.lag = figures.lag_of(self._fastest_level, self._held(leg), *split(self._push[:2], path[:2]))
         return leg
 
     def _limits(self, path: Vector) -> tuple[float, float, float]:
@@ -427,12 +422,6 @@ def course(start: Vector, end: Vector) -> float:
 def turned(before: float, after: float) -> float:
     """Return the turn from one heading to another, degrees clockwise."""
     return (after - before + 180.0) % 360.0 - 180.0
-
-
-def _split(leg: CurvedLeg, push: Vector) -> tuple[float, float]:
-    """Return how much of a push is along a leg, and to its right."""
-    (north, east), level = leg.path[:2], hypot(*leg.path[:2])
-    return (north * push[0] + east * push[1]) / level, (north * push[1] - east * push[0]) / level
 
 
 def _bisected(low: float, high: float, below: Callable[[float], bool]) -> float:
