@@ -124,9 +124,9 @@ def _of_chain(
     line = _Line(whole, pilot, bound, beside)
     begin, done = 0.0, 0.0
     spans = []
-    for one, _ in pairwise(chain):
+    for one, two in pairwise(chain):
         done += length_of(one.points)
-        end, after = line.pause(done, one)
+        end, after = line.pause(done, one, two)
         spans.append((begin, end))
         begin = after
     return [(begin, end + line.beside) for begin, end in [*spans, (begin, line.whole)]]
@@ -186,21 +186,20 @@ class _Line:
         return max(seconds, self._uploaded.from_stop_to_stop(one, two))
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
-        seconds = [action_seconds(self._robot.type, action) for action in actions]
-        return (
-            sum(acting(each, self._timing).longest for each in seconds) if self._bound > 0 else sum(seconds)
-        )
+        each = (action_seconds(self._robot.type, action) for action in actions)
+        return sum(acting(seconds, self._timing)[1 + self._bound] for seconds in each)
 
-    def pause(self, arc: float, part: Stroke) -> tuple[float, float]:
-        """Return when the robot has come to the end of a part, and when the next one must begin."""
-        stop = bisect_left(self._arcs, arc - NEAR)
-        if self._arcs[stop] <= arc + NEAR:
-            length = length_of(part.points)
-            time = self._arrivals[stop] + self._acting(a for a in part.commands if a.at > length - NEAR)
-            return time, time
-        place = part.points[-1]
-        end = self._departures[stop - 1] + self._leg(stop - 1, self._stops[stop - 1], place)
-        return end, self._arrivals[stop] - self._leg(stop - 1, place, self._stops[stop])
+    def pause(self, arc: float, one: Stroke, two: Stroke) -> tuple[float, float]:
+        """Return when the robot has come to the end of a part, and when the next one must begin.
+
+        Where a repetition is cut, that of the one ends and that of the other begins, which takes time.
+        """
+        stop, length, place = bisect_left(self._arcs, arc - NEAR), length_of(one.points), one.points[-1]
+        before, after = stop - 1, stop + (self._arcs[stop] <= arc + NEAR)
+        ending = self._acting(each for each in one.commands if each.at > length - NEAR)
+        beginning = self._acting(each for each in two.commands if each.at <= NEAR)
+        end = self._departures[before] + self._leg(before, self._stops[before], place) + ending
+        return end, self._arrivals[after] - self._leg(after - 1, place, self._stops[after]) - beginning
 
 
 def _runs(stroke: Stroke, halts: Sequence[bool], beside: tuple[int, int]) -> Iterator[tuple[range, int]]:

@@ -85,6 +85,12 @@ def test_at_the_soonest_a_robot_still_stops_between_two_actions():
     assert paced(cut, pilot_of(), -1)[-1][1] == pytest.approx(50.0 + 2.0)
 
 
+def test_at_the_soonest_actions_take_as_long_as_they_take_at_least():
+    cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), cuts=(), actions=(photo(0.0), photo(300.0)))
+    spread = with_kinematics(robot(), timing=LegTiming(spread=0.2))
+    assert paced(cut, pilot_of(spread), -1)[-1][1] == pytest.approx(0.8 * (30.0 + 2.0))
+
+
 def test_where_robots_stop_at_every_corner_the_soonest_is_what_is_planned():
     cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0))
     strict = pilot_of(minimum_separation=5.0)
