@@ -237,10 +237,13 @@ class Kinematics:
         share = self.timing.overshoot * min(speed, sqrt(acceleration * length)) / length
         return end[0] + share * east, end[1] + share * north, end[2]
 
-    @property
-    def room(self) -> float:
-        """Return the metres by which its paths keep more than its clearance: to turn, and to stop late."""
-        return self.turning_radius + self.timing.overshoot * self.cruise
+    def room(self, *speeds: float) -> float:
+        """Return the metres by which its paths keep more than its clearance: to turn, and to stop late.
+
+        Args:
+            speeds: that are commanded beside its cruise, metres per second.
+        """
+        return self.turning_radius + self.timing.overshoot * min(max((self.cruise, *speeds)), self.fastest)
 
     @property
     def shunting(self) -> float:

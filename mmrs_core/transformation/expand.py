@@ -15,6 +15,8 @@ from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.reach import Reach, in_range_of, reach_of, remedies_for, unsure
 from mmrs_core.planning.remedies import or_else
+from mmrs_core.planning.strokes import commanded_speed
+from mmrs_core.planning.travel import kinematics_of
 from mmrs_core.scene import (
     Device,
     Kinematics,
@@ -51,16 +53,12 @@ def expand(
     types = {robot.type.name: robot.type for robot in robots}
     barred = barriers(scene.elements, scene.areas, types.values(), robot_kinds, element_kinds)
     scene = replace(scene, robots=robots, areas=(*scene.areas, *barred))
-    numbers = dict[tuple[str, float, Kinematics | None], int]()
-    works = SharedWorks(
-        {
-            robot.name: numbers.setdefault((robot.type.name, robot.clearance, robot.kinematics), len(numbers))
-            for robot in robots
-        }
-    )
-    sorts = [_Sort(robots, sort, works.sorts) for sort in range(len(numbers))]
-    tasks = [task for task in scene.tasks if not task.part.is_a(CONTROL_TASK)]
-    found = {task.name: _works_of(task, scene, rules, sorts) for task in tasks}
+    works, sorts, found = _found(scene, rules)
+    hurried = {robot.name: robot for robot in _hurried(sorts, found)}
+    if hurried:
+        robots = tuple(hurried.get(robot.name, robot) for robot in robots)
+        scene = replace(scene, robots=robots)
+        works, sorts, found = _found(scene, rules)
     stations = dict.fromkeys(_stations(found, sorts, scene.position_error))
     radio = _Radio((*relays_of(scene.elements), *stations), scene.position_error)
     refusals = _Refusals(works, robots, radio)
@@ -70,6 +68,33 @@ def expand(
     if reasons:
         raise InfeasibleError(f"{len(reasons)} of the tasks can be done by no robot", reasons)
     return replace(scene, works=works, refusals=refusals)
+
+
+def _found(
+    scene: Scene, rules: Mapping[Name, Rule]
+) -> tuple[SharedWorks, list[_Sort], dict[str, list[Work | str]]]:
+    """Return the sorts of robots, and by task the work for each of them, or why they cannot do it."""
+    numbers = dict[tuple[str, float, Kinematics | None], int]()
+    works = SharedWorks(
+        {
+            robot.name: numbers.setdefault((robot.type.name, robot.clearance, robot.kinematics), len(numbers))
+            for robot in scene.robots
+        }
+    )
+    sorts = [_Sort(scene.robots, sort, works.sorts) for sort in range(len(numbers))]
+    tasks = [task for task in scene.tasks if not task.part.is_a(CONTROL_TASK)]
+    return works, sorts, {task.name: _works_of(task, scene, rules, sorts) for task in tasks}
+
+
+def _hurried(sorts: Sequence[_Sort], found: Mapping[str, Sequence[Work | str]]) -> Iterator[Robot]:
+    """Yield the robots that works command to be quicker than they cruise, with the room for that."""
+    for number, sort in enumerate(sorts):
+        works = (each[number] for each in found.values())
+        strokes = (stroke for work in works if isinstance(work, Work) for stroke in work.strokes)
+        kinematics = kinematics_of(sort.first)
+        more = kinematics.room(*(commanded_speed(each, kinematics) for each in strokes)) - kinematics.room()
+        if more > 0.0:
+            yield from (replace(robot, clearance=robot.clearance + more) for robot in sort.robots)
 
 
 class _Radio:
@@ -150,7 +175,7 @@ def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]
         kinematics = kind.kinematics(robot, scene)
     except InfeasibleError as error:
         raise InfeasibleError(f"robot '{robot.name}': {error}") from error
-    clearance = robot.clearance + kinematics.room
+    clearance = robot.clearance + kinematics.room()
     policies = in_precedence(kind=kind.policies)
     return replace(robot, kind=kind.name, kinematics=kinematics, clearance=clearance, policies=policies)
 

@@ -100,7 +100,8 @@ def _closed(
     grown: list[list[BaseGeometry]] = []
     up = number(task, "altitude") or 0.0
     for robot in serving:
-        kind, room = type_of(given, robot), kinematics_of(given, robot).room
+        kind, speeds = type_of(given, robot), (move.speed or 0.0 for move in robot.moves)
+        room = kinematics_of(given, robot).room(*speeds)
         clearance = half_diagonal_of(kind) + given.program.position_error + room
         grown.append(
             [
