@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 
-from mmrs_core.planning.pacing import BESIDE, legs_beside, paced, passed_at_begin, passed_at_end
+from mmrs_core.planning.corners import InMissions
+from mmrs_core.planning.pacing import longest_of
 from mmrs_core.planning.sorties import Pilot, waited
-from mmrs_core.planning.timeline import Timeline, Timelines, moves_along
+from mmrs_core.planning.timeline import Timeline, Timelines
+from mmrs_core.planning.uploads import Uploads
 from mmrs_core.scene import (
     Await,
     Branch,
@@ -20,12 +22,14 @@ from mmrs_core.scene import (
     Serve,
     Signal,
     Step,
-    Stroke,
     Transit,
 )
 from mmrs_core.scene.timing import noticing
 
 _SAME = 1e-6
+
+_MOST_KNOWN = 100_000
+"""Steps of which it is remembered how long they take."""
 
 
 class Charges:
@@ -40,7 +44,8 @@ class Charges:
         self._pilots = pilots
         robots = {name: pilot.robot for name, pilot in pilots.items()}
         self._timing = Timelines(robots, hasty=True, longest=self._longest)
-        self._beside = dict[int, tuple[int, int]]()
+        self._uploads, self._flown = Uploads(pilots), dict[int, InMissions]()
+        self._known = dict[object, tuple[Step, float]]()
 
     def most_used(self, plan: Plan) -> dict[str, float]:
         """Return the seconds that each robot runs on one charge at most, also if charging ends at once."""
@@ -61,14 +66,24 @@ class Charges:
         }
 
     def _longest(self, robot: str, step: Step) -> float:
-        if not isinstance(step, Serve):
+        if not isinstance(step, Transit | Serve):
             return 0.0
-        beside = self._beside.get(id(step.stroke), BESIDE)
-        return paced((step.stroke,), self._pilots[robot], 1, beside)[0][1]
+        what = (step.route, step.speed) if isinstance(step, Transit) else id(step.stroke)
+        flown, pilot = self._flown.get(id(step), InMissions()), self._pilots[robot]
+        key = robot, what, flown
+        if key not in self._known:
+            if len(self._known) >= _MOST_KNOWN:
+                self._known.clear()
+            if isinstance(step, Transit):
+                longest = pilot.travel.going(step.route, step.speed, flown).longest
+            else:
+                longest = longest_of(step.stroke, pilot, flown)
+            self._known[key] = step, longest
+        return self._known[key][1]
 
     def _of(self, plan: Plan, names: Collection[str]) -> dict[str, list[tuple[float, float]]]:
         """Return, by robot and sortie, the seconds used and what a diversion from its end takes longer."""
-        self._beside = {key: legs for each in plan.robots for key, legs in _legs_beside(each.steps)}
+        self._flown = {key: legs for each in plan.robots for key, legs in self._uploads.of(each).items()}
         timelines = self._timing.of(plan)
         given = {
             step.signal: timelines[each.robot].moments[i + 1][1]
@@ -81,24 +96,6 @@ class Charges:
             for each in plan.robots
             if each.robot in names
         }
-
-
-def _legs_beside(steps: Sequence[Step]) -> Iterator[tuple[int, tuple[int, int]]]:
-    """Yield, by identity of each stroke, the legs before and after it that may continue it."""
-    for i, step in enumerate(steps):
-        if isinstance(step, Serve):
-            before, after = _legs(reversed(steps[:i]), passed_at_end), _legs(steps[i + 1 :], passed_at_begin)
-            yield id(step.stroke), (before, after)
-
-
-def _legs(steps: Iterable[Step], passed: Callable[[Stroke], bool]) -> int:
-    """Return the legs that steps begin with in one go."""
-    moves = 0
-    for step in steps:
-        if not isinstance(step, Transit):
-            return legs_beside(moves, isinstance(step, Serve) and passed(step.stroke))
-        moves += len(list(moves_along(list(pairwise(step.route)))))
-    return legs_beside(moves, passes=False)
 
 
 def _uses(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 from math import dist, inf, pi
+from typing import NamedTuple
 
 import shapely
 
@@ -18,6 +20,8 @@ accelerate less than the robot's type says."""
 STRAIGHT = pi / 180
 """Turns smaller than this, in radians, cut no corner."""
 
+SHORTEST_RUN = 3
+"""Legs without a stop from which an autopilot may be given them as a mission."""
 
 _ON = 1e-6
 """Metres within which a corner is on a line."""
@@ -81,3 +85,30 @@ def _fits(kinematics: Kinematics, start: Position, corner: Position, end: Positi
     shorter = min(dist(start[:2], corner[:2]), dist(corner[:2], end[:2]))
     turn = turn_at(start, corner, end)
     return turn < pi and kinematics.fits_curve(turn, shorter)
+
+
+class InMissions(NamedTuple):
+    """What of some legs is part of missions that are uploaded.
+
+    Attributes:
+        legs: their numbers.
+        ends: of missions that end with one of them.
+    """
+
+    legs: frozenset[int] = frozenset()
+    ends: int = 0
+
+
+def runs_between(halts: Sequence[bool], beside: tuple[int, int]) -> Iterator[tuple[range, int]]:
+    """Yield the legs that may be part of a mission that is uploaded, and how many of its ends continue.
+
+    Args:
+        halts: whether the robot stops for certain before each leg, and after the last.
+        beside: legs before the first and after the last that may continue them.
+    """
+    last = len(halts) - 1
+    stops = [0, *(i for i in range(1, last) if halts[i]), last]
+    for begin, end in pairwise(stops):
+        before, after = not begin and not halts[0], end == last and not halts[last]
+        if end - begin + before * beside[0] + after * beside[1] >= SHORTEST_RUN:
+            yield range(begin, end), before + after

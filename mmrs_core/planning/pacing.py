@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import accumulate, pairwise
 from math import dist
 
+from mmrs_core.planning.corners import InMissions, runs_between
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import (
     NEAR,
@@ -22,9 +24,6 @@ from mmrs_core.planning.strokes import (
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.scene import ActionAt, Position, Stroke
 from mmrs_core.scene.timing import MoveSeconds, acting
-
-SHORTEST_RUN = 3
-"""Legs without a stop from which an autopilot may be given them as a mission."""
 
 BESIDE = 2, 2
 """Legs before and after a stroke that may continue it without a stop where nothing is known of them: a
@@ -140,20 +139,25 @@ class _Line:
         beside: seconds that the legs before and after it may take longer, as it is flown in one go with them.
     """
 
-    def __init__(self, stroke: Stroke, pilot: Pilot, bound: int, beside: tuple[int, int]) -> None:
+    def __init__(
+        self, stroke: Stroke, pilot: Pilot, bound: int, beside: tuple[int, int] | InMissions
+    ) -> None:
         self._robot, self._timing, self._bound = pilot.robot, pilot.kinematics.timing, bound
         self._rates = pilot.travel.bounds(commanded_speed(stroke, pilot.kinematics))[1 + bound]
         self._eased = bound < 0 and pilot.travel.fluid
         self._transit = pilot.kinematics.cruise
         self._stops = stops_of(stroke)
         self._arcs = [0.0, *accumulate(dist(one, two) for one, two in pairwise(self._stops))]
-        todo = list(stroke.commands)
-        due = [list(_due(todo, arc)) for arc in self._arcs]
+        due = _due(stroke, self._arcs)
         uploaded = pilot.travel.uploaded(commanded_speed(stroke, pilot.kinematics)) if bound > 0 else None
-        halts = self._halts(stroke, pilot, due) if uploaded is not None else []
-        runs = list(_runs(stroke, halts, beside)) if halts else []
-        self._uploaded, self._in_runs = uploaded, {leg for run, _ in runs for leg in run}
-        self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
+        self._uploaded = uploaded
+        if isinstance(beside, InMissions):
+            self._in_runs, self.beside = beside.legs, beside.ends * pilot.travel.ending
+        else:
+            halts = self._halts(stroke, pilot) if uploaded is not None else []
+            runs = list(runs_between(halts, beside)) if halts else []
+            self._in_runs = frozenset(leg for run, _ in runs for leg in run)
+            self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
         for i, (one, two) in enumerate(pairwise(self._stops)):
             between = bool(due[i] and due[i + 1])
@@ -167,9 +171,9 @@ class _Line:
         )
         self.whole = self._departures[-1] + at_the_end[1 + bound]
 
-    def _halts(self, stroke: Stroke, pilot: Pilot, due: Sequence[Sequence[ActionAt]]) -> list[bool]:
-        """Return at which of its places the robot stops for certain."""
-        halts, speed = [bool(each) for each in due], commanded_speed(stroke, pilot.kinematics)
+    def _halts(self, stroke: Stroke, pilot: Pilot) -> list[bool]:
+        """Return at which of its places the robot stops for certain, corners included."""
+        halts, speed = halts_of(stroke), commanded_speed(stroke, pilot.kinematics)
         corners = pilot.travel.uploading
         for i in range(1, len(halts) - 1):
             if not halts[i] and corners is not None:
@@ -202,26 +206,29 @@ class _Line:
         return end, self._arrivals[after] - self._leg(after - 1, place, self._stops[after]) - beginning
 
 
-def _runs(stroke: Stroke, halts: Sequence[bool], beside: tuple[int, int]) -> Iterator[tuple[range, int]]:
-    """Yield the legs that may be part of a mission that is uploaded, and how many of its ends continue.
-
-    Args:
-        stroke: of the legs.
-        halts: whether the robot stops for certain before each leg, and after the last.
-        beside: legs before and after the stroke that may continue it.
-    """
+def halts_of(stroke: Stroke) -> list[bool]:
+    """Return at which of the places where a stroke stops or turns the robot stops for certain."""
+    stops = stops_of(stroke)
     if stroke.look is not None:
-        return
-    last = len(halts) - 1
-    stops = [0, *(i for i in range(1, last) if halts[i]), last]
-    for begin, end in pairwise(stops):
-        before = not begin and not halts[0] and not stroke.settles
-        after = end == last and not halts[last] and _passes(stroke)
-        if end - begin + before * beside[0] + after * beside[1] >= SHORTEST_RUN:
-            yield range(begin, end), before + after
+        return [True] * len(stops)
+    arcs = accumulate((dist(one, two) for one, two in pairwise(stops)), initial=0.0)
+    halts = [bool(each) for each in _due(stroke, arcs)]
+    halts[0], halts[-1] = halts[0] or stroke.settles, halts[-1] or not _passes(stroke)
+    return halts
 
 
-def _due(todo: list[ActionAt], arc: float) -> Iterator[ActionAt]:
-    """Take away and yield the actions up to an arc length."""
-    while todo and todo[0].at <= arc + NEAR:
-        yield todo.pop(0)
+def _due(stroke: Stroke, arcs: Iterable[float]) -> list[list[ActionAt]]:
+    """Return the commands of a stroke by the places, as metres along it, at which they are done."""
+    todo, found = deque(stroke.commands), []
+    for arc in arcs:
+        due = list[ActionAt]()
+        while todo and todo[0].at <= arc + NEAR:
+            due.append(todo.popleft())
+        found.append(due)
+    return found
+
+
+def longest_of(stroke: Stroke, pilot: Pilot, flown: InMissions) -> float:
+    """Return the seconds that a stroke takes at most of which it is known what is flown as missions."""
+    line = _Line(stroke, pilot, 1, flown)
+    return line.whole + line.beside

@@ -200,7 +200,7 @@ class _Passage:
     Attributes:
         step: that it goes through, kept so that its key stays its own.
         rides: seconds and indices count from the begin of the step.
-        early, late: seconds that it takes at least, and at most.
+        early, late: seconds that it takes at least, and at most, as far as its moves tell.
         after: how the robot is then.
     """
 
@@ -306,7 +306,8 @@ class _Walk:
                 self.passages.clear()
             passage = self.passages[key] = self._passage(step)
         self.parts.append((passage.rides, self.now, self.by, self._place()))
-        self.now, self.by, self.state = self.now + passage.early, self.by + passage.late, passage.after
+        late = max(passage.late, self.longest(self.robot.name, step))
+        self.now, self.by, self.state = self.now + passage.early, self.by + late, passage.after
 
     def _passage(self, step: Step) -> _Passage:
         """Return how the robot, as it is, goes through a step."""
@@ -315,7 +316,7 @@ class _Walk:
         walk._arrive()
         walk._go_through(step)
         rides = tuple(ride for each in walk.parts for ride in each[0])
-        return _Passage(step, rides, walk.now, max(walk.by, self.longest(self.robot.name, step)), walk.state)
+        return _Passage(step, rides, walk.now, walk.by, walk.state)
 
     def _go_through(self, step: Step) -> None:
         if isinstance(step, Serve):

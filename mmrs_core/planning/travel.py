@@ -10,7 +10,7 @@ from math import dist, inf
 
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.planning.corners import Corners
+from mmrs_core.planning.corners import SHORTEST_RUN, Corners, InMissions, runs_between
 from mmrs_core.planning.corridors import CorridorPath, Corridors
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import Reach, Reaches
@@ -178,7 +178,7 @@ class Travel:
 
     def upload_seconds(self, legs: int) -> float:
         """Return how much longer some legs may take as parts of a mission, whose end is noticed late."""
-        uploaded, late = self.uploaded(), (1.0 + self.kinematics.timing.spread) * self.kinematics.noticing
+        uploaded = self.uploaded()
         if uploaded is None:
             return 0.0
         lengths = [(0.0, 0.0, 0.0), *((2.0**each, 0.0, 0.0) for each in range(12))]
@@ -187,7 +187,12 @@ class Travel:
             uploaded.from_stop_to_stop(lengths[0], each) - slowest.from_stop_to_stop(lengths[0], each)
             for each in lengths[1:]
         )
-        return legs * max(0.0, *more) + late
+        return legs * max(0.0, *more) + self.ending
+
+    @property
+    def ending(self) -> float:
+        """Return the seconds after which the end of a mission is noticed, at most."""
+        return (1.0 + self.kinematics.timing.spread) * self.kinematics.noticing
 
     def leave(self, goal: Position) -> Route:
         """Return the route from home to a place.
@@ -328,21 +333,41 @@ class Travel:
         shortest, expected, longest = seconds
         return Route(points, expected, length, height, expected - shortest, longest)
 
-    def going(self, points: tuple[Position, ...], speed: float | None = None) -> MoveSeconds:
-        """Return how long it takes from the first of some points to the last."""
+    def going(
+        self, points: tuple[Position, ...], speed: float | None = None, flown: InMissions | None = None
+    ) -> MoveSeconds:
+        """Return how long it takes from the first of some points to the last.
+
+        Args:
+            points: of the path.
+            speed: commanded, metres per second; None: its cruise.
+            flown: which of its legs are part of missions; None: any that may be.
+        """
         soonest, rates, latest = self.bounds(speed)
         quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop
         legs = list(pairwise(points))
-        passes = self.kinematics.turning_radius > 0.0 or self.entries or self.exits
-        uploaded = self.uploaded(speed) if len(legs) > 1 and passes else None
-        if uploaded is not None:
-            most = sum(max(latest.from_stop_to_stop(*leg), uploaded.from_stop_to_stop(*leg)) for leg in legs)
-            most += (1.0 + self.kinematics.timing.spread) * self.kinematics.noticing
-        else:
-            most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
+        longest = [latest.from_stop_to_stop(*leg) for leg in legs]
+        flown = self._in_missions(points, speed) if flown is None else flown
+        for i in flown.legs:
+            longest[i] = max(longest[i], self._in_mission(legs[i], speed))
         return MoveSeconds(
-            sum(quickest(*leg) for leg in legs), sum(rates.from_stop_to_stop(*leg) for leg in legs), most
+            sum(quickest(*leg) for leg in legs),
+            sum(rates.from_stop_to_stop(*leg) for leg in legs),
+            flown.ends * self.ending + sum(longest),
         )
+
+    def _in_missions(self, points: tuple[Position, ...], speed: float | None) -> InMissions:
+        """Return which legs may be part of missions; one between others counts with those."""
+        if self.uploading is None or not (self.kinematics.turning_radius > 0.0 or self.entries or self.exits):
+            return InMissions()
+        corners = zip(points, points[1:], points[2:], strict=False)
+        halts = [False, *(not self.uploading.may_pass(*each, speed) for each in corners), False]
+        runs = [run for run, _ in runs_between(halts, (SHORTEST_RUN, SHORTEST_RUN)) if len(run) > 1]
+        return InMissions(frozenset(i for run in runs for i in run), len(runs))
+
+    def _in_mission(self, leg: tuple[Position, Position], speed: float | None) -> float:
+        uploaded = self.uploaded(speed)
+        return 0.0 if uploaded is None else uploaded.from_stop_to_stop(*leg)
 
     def _upright(self, seconds: float, route: Route | None = None) -> MoveSeconds:
         """Return how long launching or landing takes, and a route before or after that."""
