@@ -38,6 +38,30 @@ def uncovered_by(
     return shapely.difference(whole, footprint(lines, width, length), grid_size=GRID)
 
 
+def needed(pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float) -> list[Swath]:
+    """Return the swaths without spots about which all that is covered of the pieces is so about others.
+
+    Such are where swaths step aside around corners: only spots that are near to another one are asked about.
+    """
+    shapes = [_about(line, width, length) for line in lines]
+    every = np.concatenate(shapes)
+    centres = shapely.centroid(every)
+    pairs = shapely.STRtree(centres).query(centres, "dwithin", min(width, length) / 2.0 - GRID)
+    near = np.unique(pairs[0][pairs[0] != pairs[1]])
+    whole, tree = shapely.union_all(list(pieces), grid_size=GRID), shapely.STRtree(every)
+    line_of = np.repeat(np.arange(len(lines)), [len(each) for each in shapes])
+    kept = np.ones(len(every), np.bool_)
+    for spot in sorted(near.tolist(), key=lambda each: len(shapes[line_of[each]])):
+        kept[spot] = False
+        others = tree.query(every[spot])
+        own = shapely.intersection(every[spot], whole)
+        covered = shapely.union_all(every[others[kept[others]]], grid_size=GRID)
+        kept[spot] = shapely.difference(own, covered, grid_size=GRID).area > GRID * 2.0 * (width + length)
+    left = (np.array(line.spots)[kept[line_of == i]].tolist() for i, line in enumerate(lines))
+    found = zip(lines, left, strict=True)
+    return [line if len(spots) == len(line.spots) else line.only(spots) for line, spots in found if spots]
+
+
 def _along(line: Swath, width: float) -> NDArray[np.object_]:
     direction = np.diff(line.points, axis=0)
     return _rectangles(

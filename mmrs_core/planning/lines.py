@@ -7,7 +7,7 @@ action, because what an action covers reaches beyond its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import ceil, dist, hypot, inf
 from typing import TypeAlias
@@ -65,6 +65,19 @@ class Swath:
         legs, spots, arcs = self.legs_of_spots, np.array(self.spots), self.arcs
         for leg in np.unique(legs):
             yield self.points[leg : leg + 2], tuple((spots[legs == leg] - arcs[leg]).tolist())
+
+    def only(self, spots: Sequence[float]) -> Swath:
+        """Return the swath from the first to the last of some of its spots, each seen from the same side."""
+        arcs, legs = self.arcs, replace(self, spots=tuple(spots)).legs_of_spots
+        first, last = int(legs[0]), int(legs[-1])
+        begin = spots[0] if len(spots) > 1 and arcs[first + 1] - spots[0] > APART else float(arcs[first])
+        if spots[-1] - begin < APART:
+            return Swath(self.points[first : first + 2], (spots[0] - begin,))
+        ends = [[np.interp(arc, arcs, self.points[:, axis]) for axis in (0, 1)] for arc in (begin, spots[-1])]
+        return Swath(
+            np.array([ends[0], *self.points[first + 1 : last + 1], ends[1]]),
+            tuple(each - begin for each in spots),
+        )
 
     @property
     def arcs(self) -> Floats:

@@ -15,7 +15,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.geometry.polygons import parts
-from mmrs_core.planning.footprints import uncovered_by
+from mmrs_core.planning.footprints import needed, uncovered_by
 from mmrs_core.planning.lines import Swath
 from mmrs_core.planning.strips import swaths_along_x
 from mmrs_core.planning.tours import hop_length, tour
@@ -77,6 +77,8 @@ def swaths(
     if not lines:
         place = pieces[0].representative_point()
         return [Swath(np.array([[place.x, place.y]]))]
+    if length > 0.0:
+        lines = needed(pieces, lines, width, length)
     begins, ends = _ends(lines)
     return [lines[i].reversed() if back else lines[i] for i, back in tour(begins, ends, start)]
 

@@ -5,7 +5,7 @@ import pytest
 import shapely
 import shapely.affinity
 
-from mmrs_core.planning.footprints import uncovered_by
+from mmrs_core.planning.footprints import needed, uncovered_by
 from mmrs_core.planning.levels import legs_over
 from mmrs_core.planning.lines import Swath, spots_over
 from mmrs_core.planning.slabs import Band, Cell
@@ -87,6 +87,20 @@ def test_teeth_with_narrow_gaps_are_crossed_by_straight_swaths():
     assert len(lines) == 6
     assert all(len(line.points) == 2 for line in lines)
     assert uncovered_by([field], lines, 12.0, 12.0).area < 1e-6
+
+
+def test_photos_that_show_nothing_but_what_others_show_are_not_made():
+    row = Swath(np.array([[4.98, 5.0], [25.0, 5.0]]), (0.0, 0.02, 10.02, 20.02))
+    again = Swath(np.array([[15.004, 9.0], [15.004, 5.0]]), (4.0,))
+    (line,) = needed([shapely.box(0, 0, 30, 10)], [row, again], 10.0, 10.0)
+    assert line.points.tolist() == [[5.0, 5.0], [25.0, 5.0]]
+    assert line.spots == pytest.approx((0.0, 10.0, 20.0))
+
+
+def test_the_only_photo_left_of_a_swath_is_made_from_where_it_was():
+    bend = Swath(np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]), (9.0, 13.0, 18.0))
+    line = bend.only([13.0])
+    assert (line.points.tolist(), line.spots) == ([[9.0, 0.0], [9.0, 4.0]], (4.0,))
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 0.7, 2.0])
