@@ -202,8 +202,11 @@ class _Line:
         before, after = stop - 1, stop + (self._arcs[stop] <= arc + NEAR)
         ending = self._acting(each for each in one.commands if each.at > length - NEAR)
         beginning = self._acting(each for each in two.commands if each.at <= NEAR)
-        end = self._departures[before] + self._leg(before, self._stops[before], place) + ending
-        return end, self._arrivals[after] - self._leg(after - 1, place, self._stops[after]) - beginning
+        end = self._departures[before] + self._leg(before, self._stops[before], place)
+        begin = self._arrivals[after] - self._leg(after - 1, place, self._stops[after])
+        if self._eased and after == before + 1:  # parts of a leg take longer than the whole, at least
+            end = min(end, begin)
+        return end + ending, begin - beginning
 
 
 def halts_of(stroke: Stroke) -> list[bool]:

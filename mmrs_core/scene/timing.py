@@ -351,7 +351,7 @@ class Rates:
         return self.share * max(0.0, lag + self.timing.settled(fastest, seconds))
 
     def eased(self, start: Position, end: Position, entering: float = 0.0) -> float:
-        """Return the fewest seconds of a leg whose ends are passed.
+        """Return the fewest seconds of a leg whose ends may be passed.
 
         An autopilot that passes within a radius is on the neighbouring legs at the same time, for as long
         as it speeds up and slows down; of another nothing is known but its speed. One that slows down for
@@ -361,8 +361,9 @@ class Rates:
             start, end: of the leg.
             entering: metres per second commanded on the leg before.
         """
+        stopping = self.from_stop_to_stop(start, end)
         if self.timing.corner_radius == inf:
-            return self.even(start, end)
+            return min(stopping, self.even(start, end))
         end = self._early(start, end)
         if self.timing.slows_down:
             end = self._early(start, end)
@@ -372,7 +373,7 @@ class Rates:
         if not self.timing.slows_down:
             seconds, _ = self._stopping(start, end)
             eased = max(eased, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
-        return max(0.0, eased - saved)
+        return min(stopping, max(0.0, eased - saved))
 
     def _behind_start(self, start: Position, end: Position) -> Position:
         """Return where a leg may begin of a robot that counts the last one as over within a radius."""

@@ -184,6 +184,7 @@ def test_bounds_are_around_what_is_expected(timing, length):
     soonest, latest = found.soonest(), found.latest()
     expected = found.from_stop_to_stop(HERE, east(length))
     assert soonest.from_stop_to_stop(HERE, east(length)) == pytest.approx(expected * (1.0 - timing.spread))
+    assert soonest.eased(HERE, east(length)) <= soonest.from_stop_to_stop(HERE, east(length))
     most = latest.from_stop_to_stop(HERE, east(length))
     if timing.slows_down:  # the place before may count as passed a radius before it
         assert most >= expected * (1.0 + timing.spread) - 1e-9
