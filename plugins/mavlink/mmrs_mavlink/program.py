@@ -11,7 +11,7 @@ from mmrs_runtime.controllers import *  # noqa: F403  # all that programs of any
 from mmrs_runtime.controllers import GoTo, NoEffect, Notify, Object, Place, Report
 from mmrs_runtime.controllers import vocabulary as words
 
-from .profiles import VehicleProfile, profile_for
+from .profiles import ARDUPILOT, VehicleProfile, profile_for
 
 __all__ = ["Action", "Charge", "Measure", "Operate", "Robot", "Run", "TakeOff", "Travel"]
 __all__ += controllers.__all__
@@ -127,6 +127,7 @@ class Robot(words.Robot):
         neighbours: homes of the others whose vehicles might be taken for this robot's, by robot.
         travel: travel mode.
         driven_by: ``module:name`` of the profile of a plug-in that drives its vehicle; empty: one of ours.
+        autopilot: whose times count for its plan, as the device property ``mavlink.autopilot`` names it.
     """
 
     endurance: float | None = field(default=None, kw_only=True)
@@ -140,6 +141,7 @@ class Robot(words.Robot):
     neighbours: tuple[tuple[str, Place], ...] = field(default=(), kw_only=True)
     travel: Travel = field(default=Travel(), kw_only=True)
     driven_by: str = field(default="", kw_only=True)
+    autopilot: str = field(default=ARDUPILOT.name, kw_only=True)
 
     @cached_property
     def profile(self) -> VehicleProfile:

@@ -49,6 +49,10 @@ def test_every_place_is_passed(flown):
         assert min(dist((n, e, u), (north, east, up)) for _, n, e, u in track) < PASSED
 
 
+def test_a_px4_that_was_planned_as_an_ardupilot_is_reported_once(flown):
+    assert flown[1].count("the vehicle's autopilot is px4, and it was planned for ardupilot (warning:") == 1
+
+
 def test_a_px4_is_told_what_to_do_when_the_link_is_lost(flown):
     _, said, autopilot = flown
     assert autopilot.parameters["NAV_DLL_ACT"] == 2

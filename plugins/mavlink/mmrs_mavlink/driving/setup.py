@@ -137,7 +137,7 @@ class Setup:
         resumed, vehicle = self._live.resumed, self._with.vehicle
         first = resumed and not self.is_done
         if (radio := self._with.radio) is not None:
-            from ..vehicles.recognition import recognise  # needs MAVLink's library
+            from ..vehicles.recognition import other_times, recognise  # needs MAVLink's library
 
             recognise(
                 radio.link,
@@ -148,6 +148,8 @@ class Setup:
                 under_way=resumed,
                 system=radio.system,
             )
+            if not self.is_known and (said := other_times(radio.link, self._robot)):
+                self._live.say(said)
         if first:
             self._way.know(self._live.passed, self._live.begun)
         self.is_known = True

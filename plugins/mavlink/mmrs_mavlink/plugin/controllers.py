@@ -27,7 +27,7 @@ from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_c
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.runs import MoveRun, runs_of
-from mmrs_mavlink.profiles import PROFILES
+from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
 from mmrs_mavlink.wiring import Sampled, Wired
 
 
@@ -157,6 +157,8 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             context.degrees.find([*kept.vertices, *(home[:2] for _, home in homes)])
         if context.profile.source:
             yield "driven_by", context.profile.source
+        if context.profile.autopilot.name != ARDUPILOT.name:
+            yield "autopilot", context.profile.autopilot.name
         yield "neighbours", tuple((name, place_of(home, context)) for name, home in homes)
         yield from _endurance(context)
         if (charge := charge_of(robot, input)) is not None:

@@ -10,7 +10,7 @@ from mmrs_runtime.faults import RefusedError
 from mmrs_runtime.records.entries import entry_in
 
 from ..links.link import Link
-from ..profiles import modes
+from ..profiles import GENERIC, modes
 from ..program import Place, Robot
 from ..services import parameters
 from ..vehicles import preparation
@@ -70,6 +70,21 @@ def recognise(
             f"the vehicle is armed, and it is in mode {mode}, by which it answers no lost link:"
             " a pilot may have it"
         )
+
+
+def other_times(link: Link, robot: Robot) -> str:
+    """Return that a robot's times were planned for another autopilot than its vehicle's; empty: not so.
+
+    An autopilot that no profile knows has no times that could be planned.
+    """
+    found = link.profile.autopilot
+    if found.number == GENERIC.number or found.name == robot.autopilot:
+        return ""
+    return (
+        f"the vehicle's autopilot is {found.name}, and it was planned for {robot.autopilot} (warning: its"
+        f" legs take other times than planned: set mavlink.autopilot = {found.name} in its robot type, and"
+        " plan again)"
+    )
 
 
 def _alone(link: Link) -> frozenset[int]:

@@ -6,11 +6,13 @@ from math import inf
 
 import pytest
 from flight_crew import HOME, manned, robot_of
+from mavlink_peer import ARDUPILOT, PX4, linked
 from patience import until
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.vehicles.footing import aside
-from mmrs_mavlink.vehicles.recognition import recognise, refuse_neighbours
+from mmrs_mavlink.vehicles.recognition import other_times, recognise, refuse_neighbours
 from mmrs_runtime.faults import RefusedError
 
 
@@ -120,3 +122,23 @@ def test_a_vehicle_whose_run_is_resumed_stands_where_its_log_leaves_it_or_is_to_
             assert str(refused.value) == f"the vehicle is {words}"
         else:
             assert made.vehicle.start == (PERCH if away > 50.0 else HOME)
+
+
+@pytest.mark.parametrize(
+    ("planned", "found", "number"), [("ardupilot", "px4", PX4), ("px4", "ardupilot", ARDUPILOT)]
+)
+def test_an_autopilot_that_its_times_were_not_planned_for_is_reported(planned, found, number):
+    with linked(autopilot=number) as (link, _):
+        assert other_times(link, robot_of(autopilot=planned)) == (
+            f"the vehicle's autopilot is {found}, and it was planned for {planned} (warning: its legs take"
+            f" other times than planned: set mavlink.autopilot = {found} in its robot type, and plan again)"
+        )
+
+
+@pytest.mark.parametrize(
+    ("planned", "number"),
+    [("ardupilot", ARDUPILOT), ("px4", PX4), ("ardupilot", mavlink.MAV_AUTOPILOT_GENERIC)],
+)
+def test_nothing_is_reported_of_an_autopilot_that_was_planned_for_or_has_no_times(planned, number):
+    with linked(autopilot=number) as (link, _):
+        assert other_times(link, robot_of(autopilot=planned)) == ""

@@ -306,6 +306,13 @@ def test_a_wiring_of_a_plugin_reaches_controllers_and_missions():
     assert [item["command"] for item in plan["mission"]["items"]] == [22, 178, 16, 183, 184, 19, 21]
 
 
+@pytest.mark.parametrize(("properties", "said"), [({}, False), ({"mavlink.autopilot": "px4"}, True)])
+def test_an_autopilot_that_is_planned_for_is_passed_on_where_it_is_no_ardupilot(properties, said):
+    made = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
+    source = generated(made, types=[quad(**properties)])["robot_alpha.py"].decode()
+    assert ('autopilot="px4"' in source) is said
+
+
 def test_the_number_of_a_gimbal_is_passed_on():
     made = program(robot_program("alpha", [DRIVE]))
     given = target_input(made, [crawler(**{"mavlink.gimbal": "3"})])
