@@ -31,7 +31,8 @@ from mmrs_core.errors import MmrsError
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("flights", nargs="*", type=Path, metavar="FLIGHT")
-    parser.add_argument("--px4", action="append", type=Path, default=[], help="a flight with a PX4")
+    of_px4 = "a flight with a PX4 that its robot types do not state (mavlink.autopilot); repeatable"
+    parser.add_argument("--px4", action="append", type=Path, default=[], metavar="FLIGHT", help=of_px4)
     parser.add_argument("--legs", action="store_true", help="print the legs that deviate as well")
     given = parser.parse_args()
     folders = [*given.flights, *given.px4]
