@@ -74,6 +74,7 @@ class Recording:
         self._state = state
         self._geographic = geographic
         self._fixed = float("-inf")
+        self._armed = False
         self._others: dict[str, float] = {}
         self._set_points: dict[str, Mapping[str, object]] = {}
         self._commands: dict[int, tuple[float, int, list[float]]] = {}
@@ -179,6 +180,15 @@ class Recording:
         state = replace(self._state(), place=place_in(message), speed=_speed(message))
         fix(self._box, state if (north := _heading(message)) is None else replace(state, heading=north))
 
+    def _on_heartbeat(self, message: Message) -> None:
+        """Write where it was armed or disarmed: a program ends with that, before the next position."""
+        armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+        if message.autopilot == mavlink.MAV_AUTOPILOT_INVALID or armed == self._armed:
+            return
+        self._armed = armed
+        if self._fixed > float("-inf"):
+            fix(self._box, replace(self._state(), armed=armed))
+
     def _on_text(self, message: Message) -> None:
         severity = _word("MAV_SEVERITY", message.severity)
         self._box.write("text", severity=severity, text=_text(message.text))
@@ -206,6 +216,7 @@ _HEARD: Mapping[str, Callable[[Recording, Any], None]] = {
     "COMMAND_ACK": Recording._on_command_ack,
     "MISSION_ACK": Recording._on_mission_ack,
     "PARAM_VALUE": Recording._on_parameter,
+    "HEARTBEAT": Recording._on_heartbeat,
     "GLOBAL_POSITION_INT": Recording._on_position,
     "LOCAL_POSITION_NED": Recording._on_position,
     "STATUSTEXT": Recording._on_text,

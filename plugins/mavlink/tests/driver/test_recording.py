@@ -4,6 +4,7 @@ import json
 import threading
 
 import pytest
+from mavlink_peer import heartbeat
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -24,8 +25,10 @@ def fixes(tmp_path):
     path = black_box_path(tmp_path / "alpha.jsonl")
     box = BlackBox(path, "run-0", "alpha", lambda: 1.5)
 
-    def record(message, *, geographic: bool):
-        Recording(box, Clock(), lambda: BEFORE, geographic=geographic)(message, False)
+    def record(*messages, geographic: bool):
+        keep = Recording(box, Clock(), lambda: BEFORE, geographic=geographic)
+        for message in messages:
+            keep(message, False)
         text = path.read_text("ascii") if path.exists() else ""
         lines = (json.loads(line) for line in text.splitlines())
         return [line for line in lines if line["kind"] == "fix"]
@@ -61,6 +64,21 @@ def test_a_local_fix_has_the_speed_of_its_message(fixes):
     )
     assert fix["place"] == {"north": 1.0, "east": 2.0, "height": 3.0}
     assert fix["speed"] == 1.0
+
+
+HERE = mavlink.MAVLink_global_position_int_message(0, 420000100, 130000200, 0, 0, 0, 0, 0, 18_000)
+
+
+def test_a_vehicle_that_is_disarmed_is_so_in_the_last_fix_whatever_comes_after(fixes):
+    kept = fixes(
+        heartbeat(armed=True), HERE, heartbeat(armed=True), heartbeat(), heartbeat(), geographic=True
+    )
+    assert [fix["armed"] for fix in kept] == [True, False]
+
+
+def test_other_parts_of_a_vehicle_are_not_armed(fixes):
+    camera = heartbeat(autopilot=mavlink.MAV_AUTOPILOT_INVALID)
+    assert len(fixes(heartbeat(armed=True), HERE, camera, geographic=True)) == 1
 
 
 def test_places_are_taken_from_messages_of_the_programs_frame_only(fixes):
