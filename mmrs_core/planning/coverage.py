@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import pairwise
-from math import cos, floor, pi
+from math import floor
 
 import numpy as np
 import shapely
@@ -17,7 +17,7 @@ from shapely.geometry import GeometryCollection, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.geometry.clearance import EPSILON, SIDES, grow
+from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts, polygon, rings
 from mmrs_core.planning.footprints import GRID
 from mmrs_core.planning.in_passing import trigger_distance
@@ -31,9 +31,6 @@ from mmrs_core.scene import ActionAt, Area, Coverage, Point, Repetition, Ring, R
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
-
-_ROUND = 8
-"""Corners of a quarter of a circle within the rim of what is kept from, which a target leaves out."""
 
 _POCKETS = 5e-4
 """Share of a target that walled-in pockets may have to be left alone."""
@@ -107,7 +104,7 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
     action, width, length = sweep.action, sweep.width, sweep.length
     if action is not None and not length > 0:
         raise ValueError(f"action {action!r} needs a length to cover along the stroke, {length} is none")
-    target = target_of(scene, robot, shell, holes, sweep.altitude, seen=length > 0)
+    target = target_of(scene, robot, shell, holes, sweep.altitude)
     area = sum(piece.area for piece in target)
     if not target:
         asked = shapely.difference(polygon(shell), _union(holes), grid_size=GRID).area
@@ -143,41 +140,26 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
 
 
 def target_of(
-    scene: Scene, robot: Robot, shell: Ring, holes: Sequence[Ring], altitude: float, *, seen: bool = False
+    scene: Scene, robot: Robot, shell: Ring, holes: Sequence[Ring], altitude: float
 ) -> tuple[Polygon, ...]:
     """Return the shell less its holes less what the robot must keep from at a height, largest first.
 
     What areas close in at all heights is not part of it either.
-
-    Args:
-        scene, robot: of the target.
-        shell: of the polygon. holes: in it.
-        altitude: height above the origin, metres.
-        seen: whether it is covered from beside: then what lies between the distance that is kept and the
-            somewhat larger one of paths (`grow`) is part of it.
     """
-    asked = shapely.difference(polygon(shell), _union(holes), grid_size=GRID)
-    taken = [*grown_areas(scene, robot, altitude), *(pocket for pocket, _ in pockets_of(robot, scene))]
-    left = shapely.difference(asked, shapely.union_all(taken, grid_size=GRID), grid_size=GRID)
-    kept = [(each, each.safety_distance + robot.clearance) for each in _areas_at(scene, robot, altitude)]
-    if seen and kept:
-        rim = max(metres for _, metres in kept) * (1.0 / cos(pi / SIDES) - 1.0) + 2.0 * EPSILON
-        about = left.buffer(rim, join_style="mitre")
-        exact = [polygon(area.shell).buffer(metres, quad_segs=_ROUND) for area, metres in kept]
-        left = shapely.intersection(asked, about, grid_size=GRID)
-        left = shapely.difference(left, shapely.union_all(exact, grid_size=GRID), grid_size=GRID)
+    taken = [polygon(hole) for hole in holes] + grown_areas(scene, robot, altitude)
+    taken += (pocket for pocket, _ in pockets_of(robot, scene))
+    whole = polygon(shell)
+    left = shapely.difference(whole, shapely.union_all(taken, grid_size=GRID), grid_size=GRID)
     return parts(left, smallest=_SMALLEST)
 
 
 def grown_areas(scene: Scene, robot: Robot, altitude: float) -> list[Polygon]:
     """Return the areas that a robot keeps from at a height, grown by its clearance."""
     return [
-        grow(area.shell, area.safety_distance + robot.clearance) for area in _areas_at(scene, robot, altitude)
+        grow(area.shell, area.safety_distance + robot.clearance)
+        for area in scene.kept_from(robot)
+        if blocks_at(area, robot.clearance, altitude)
     ]
-
-
-def _areas_at(scene: Scene, robot: Robot, altitude: float) -> Iterator[Area]:
-    return (each for each in scene.kept_from(robot) if blocks_at(each, robot.clearance, altitude))
 
 
 def blocks_at(area: Area, clearance: float, height: float) -> bool:
@@ -198,9 +180,7 @@ def closed_at(scene: Scene, robot: Robot, altitude: float) -> BaseGeometry:
 def _worth(target: tuple[Polygon, ...], closed: BaseGeometry) -> tuple[Polygon, ...]:
     whole = sum(piece.area for piece in target)
     pockets = [Polygon(hole) for part in parts(closed) for hole in part.interiors]
-    walled = [
-        each for each in target if any(2.0 * pocket.intersection(each).area > each.area for pocket in pockets)
-    ]
+    walled = [piece for piece in target if any(pocket.covers(piece) for pocket in pockets)]
     if sum(piece.area for piece in walled) > _POCKETS * whole:
         return target
     return tuple(piece for piece in target if piece not in walled)
