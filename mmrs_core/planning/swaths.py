@@ -26,8 +26,8 @@ _ANGLES = 8
 _SHIFTED = 3
 _SHIFTS = (0.0, 0.5, 1.0)
 _REPAIRS = 4
-_LEFT_OUT = 1e-5
-"""Share of the target that swaths may leave out: a hundredth of what is promised."""
+_LEFT_OUT = 1e-7
+"""Share of the target that swaths may leave out: rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +168,7 @@ def _repaired(pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach) -> l
     """Add lines through what the lines leave out, until next to nothing is left."""
     area = sum(piece.area for piece in pieces)
     for _ in range(_REPAIRS):
-        rest = parts(uncovered_by(pieces, lines, reach.width, reach.length), smallest=1e-7 * area)
+        rest = parts(uncovered_by(pieces, lines, reach.width, reach.length), smallest=1e-9 * area)
         if sum(piece.area for piece in rest) <= _LEFT_OUT * area:
             return lines
         lines = lines + [line for piece in rest for line in _sweep([piece], reach, _long_side(piece))]
