@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.assembly import spans_of
-from mmrs_core.scene import Await, Branch, Plan, Recharge, Recover, RobotPlan, Scene, Signal, Step
+from mmrs_core.planning.strokes import length_of
+from mmrs_core.scene import Await, Branch, Plan, Recharge, Recover, RobotPlan, Scene, Signal, Step, Transit
 
 
 def delayed(scene: Scene, plan: Plan, robot: str, waits: Mapping[int, float]) -> Plan:
@@ -91,21 +92,26 @@ def _at(step: Step, now: float, given: dict[str, float]) -> Step:
 
 
 def _changed(before: RobotPlan, steps: tuple[Step, ...]) -> RobotPlan:
-    """Return a robot's plan with other waits, which count where it is away from home."""
-    more = _waited_away(steps) - _waited_away(before.steps)
-    if more == 0.0:
+    """Return a robot's plan with other waits, which count where it is away from home, and other routes."""
+    more, longer = (_away(steps) - _away(before.steps), _metres(steps) - _metres(before.steps))
+    if more == longer == 0.0:
         return replace(before, steps=steps)
     busy = before.busy + more
     energy = before.energy * busy / before.busy if before.energy and before.busy else before.energy
-    return replace(before, steps=steps, busy=busy, energy=energy)
+    return replace(before, steps=steps, length=before.length + longer, busy=busy, energy=energy)
 
 
-def _waited_away(steps: Iterable[Step]) -> float:
-    """Return the seconds that a robot waits between leaving home and being back."""
+def _away(steps: Iterable[Step]) -> float:
+    """Return the seconds that a robot waits, or is on routes, between leaving home and being back."""
     seconds, away = 0.0, False
     for step in steps:
         if isinstance(step, Await):
             seconds += away * (step.end - step.begin)
         elif not isinstance(step, Signal):
             away = not isinstance(step, Recover | Recharge)
+            seconds += isinstance(step, Transit) * (step.end - step.begin)
     return seconds
+
+
+def _metres(steps: Iterable[Step]) -> float:
+    return sum(length_of(step.route) for step in steps if isinstance(step, Transit))

@@ -168,6 +168,9 @@ class _ShortError(_UnexplainedError):
     """No robot is left to do some job, perhaps only because of constraints put on the team."""
 
 
+_FAIR = 1.2
+"""Times the mission time without separation up to which no other team is planned to keep apart for less."""
+
 _FEW_PAIRS = 100
 """Jobs times robots up to which a refusal is worth another whole plan."""
 
@@ -193,7 +196,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
     try:
         found, made = _plan_of(team, jobs, search, best)
         best = _better(made, best)
-        if made.makespan <= DEAR * found.makespan:
+        if made.makespan <= _FAIR * found.makespan:
             return best
     except TooNearError as error:
         refusal = error
@@ -301,7 +304,7 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
 def _kept_apart(
     team: Team, jobs: Sequence[Job], search: _Search, decisions: Decisions, found: Plan, best: Plan | None
 ) -> Plan:
-    """Return a plan as its robots keep apart: waiting on their paths or starting later, as costs less.
+    """Return a plan as its robots keep apart: by waits, signals and levels, or by later starts.
 
     What is not better than the best so far is not sought any further.
     """
@@ -315,9 +318,9 @@ def _kept_apart(
         return later
     if waiting.makespan <= DEAR * found.makespan:
         return waiting
-    search.dear.append((team, found))
-    least = _better(waiting, best)
-    return starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or waiting
+    made = signalled(team, found, _better(waiting, best).makespan) or waiting
+    least = _better(made, best)
+    return starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
 
 
 def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:

@@ -1,9 +1,10 @@
-"""Keeps robots apart by signals: one waits until another tells that it is out of the way.
+"""Keeps robots apart by levels and signals: one goes above another, or waits until that is out of the way.
 
 A wait by the clock must allow for how slow and how quick robots may be, and the more the later it is. A
 signal ends a wait as soon as the other robot is out of the way. Where two robots come too near, one of them
 waits before a move of its path until the other one begins a later move, as trains do on a single track; or
-by the clock, where that costs less. So robots follow each other through corridors, and relays go home.
+by the clock, where that costs less. So robots follow each other through corridors, and relays go home. Where
+robots fly, one of them may go higher on that leg, as flights at other levels do that cross each other.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ _Offers: TypeAlias = Generator[tuple[Plan, float], bool | None, None]
 DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
 
-_STEPS = 8_000
-"""Steps of plans that are looked at, at most: one plan for each wait, at least one wait for each conflict."""
+_STEPS = 100_000
+"""Steps of plans that are looked at, at most: one plan for each wait or level, at least one a conflict."""
 
 _PLACES = 6
 """Steps back from where two robots meet that are tried to wait before."""
@@ -40,15 +41,18 @@ _PLACES = 6
 _SHORT, _LONG = 3.0, 10.0
 """Distances to keep before the end of a long leg at which a robot may wait."""
 
+_LEVELS = 8
+"""Levels at most, each higher by the distance to keep, that are tried for a leg."""
+
 _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
 
 
 def signalled(team: Team, plan: Plan, most: float = inf) -> Plan | None:
-    """Return the plan in which robots wait for signals so that all keep apart; None if none is found.
+    """Return the plan in which robots go at levels or wait so that all keep apart; None if none is found.
 
-    Of the two robots that come too near first, that one waits with which the mission ends sooner: before
-    legs of its path, or on long legs too, before the ends of these.
+    Of the two robots that come too near first, that one does with which the mission ends sooner: it waits
+    before legs of its path, or on long legs too, before the ends of these.
 
     Args:
         team: of the scene, with a minimum separation.
@@ -98,7 +102,7 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic
     conflict = traffic.earliest()
     pairs = (conflict.first, conflict.second), (conflict.second, conflict.first)
     before = {pair: _progress(traffic, *pair) for pair in pairs}
-    offers = [(pair, each) for pair in pairs for each in _offers(team.scene, traffic, *pair, cut=cut)]
+    offers = [(pair, each) for pair in pairs for each in _offers(team, traffic, *pair, cut=cut)]
     waiting: list[tuple[tuple[float, float, float], int, Plan, float]] = []
 
     def ask(number: int, *, may: bool | None) -> None:
@@ -120,15 +124,36 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic
     return None
 
 
-def _offers(scene: Scene, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[_Offers]:
-    """Yield how one robot may wait for another: by the clock, at home only or not, and for signals."""
+def _offers(team: Team, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[_Offers]:
+    """Yield how one robot may go above another, or wait for it: by the clock, at home or not, or a signal."""
     met = traffic.met(early, late)
     place = min(step for step, _, _ in met)
+    yield _lifting(team, traffic, late, place)
     for at_home in (False, True):
         waits = traffic.waits(late, at_home=at_home, last=place)
         if waits is not None:
-            yield _single(delayed(scene, traffic.plan, late, waits))
-    yield _signalling(scene, traffic, early, late, cut=cut)
+            yield _single(delayed(team.scene, traffic.plan, late, waits))
+    yield _signalling(team.scene, traffic, early, late, cut=cut)
+
+
+def _lifting(team: Team, traffic: Traffic, late: str, place: int) -> _Offers:
+    """Yield plans in which a robot goes higher on one leg, by the distance to keep and multiples of it."""
+    steps, travel = traffic.steps(late), team.pilots[late].travel
+    step = steps[place] if place < len(steps) else None
+    if not isinstance(step, Transit):
+        return
+    start, goal, highest = step.route[0], step.route[-1], max(up for _, _, up in step.route)
+    for number in range(1, _LEVELS + 1):
+        level = max(start[2], goal[2]) + number * (traffic.least + 0.1)
+        route = travel.above(start, goal, level) if level > highest else None
+        if route is None:
+            continue
+        seconds = travel.going(route, step.speed).expected
+        lifted = replace(step, end=step.begin + seconds, route=route)
+        others = {each.robot: each.steps for each in traffic.plan.robots}
+        others[late] = (*steps[:place], lifted, *steps[place + 1 :])
+        if not (yield retimed(team.scene, traffic.plan, others), inf):
+            return
 
 
 def _single(plan: Plan) -> _Offers:
@@ -267,22 +292,32 @@ def _parts(robot: Robot, steps: Iterable[Step]) -> Iterator[Step]:
 
 def _joined(scene: Scene, plan: Plan, before: Plan) -> Plan:
     """Return the plan with moves of one transit in one step again, where nothing is between them."""
+    whole = _routes(_by_moves(scene, before))
+    alone = {route for route in _routes(plan) - whole if len(route) > 2}
     steps = {}
     for each, old in zip(plan.robots, before.robots, strict=True):
         joints = {_corner(*pair) for pair in pairwise(old.steps)}
-        steps[each.robot] = tuple(_in_one(each.steps, joints))
+        steps[each.robot] = tuple(_in_one(each.steps, joints, alone))
     return retimed(scene, plan, steps)
 
 
-def _in_one(steps: Iterable[Step], joints: Collection[Corner | None]) -> Iterator[Step]:
+def _routes(plan: Plan) -> set[tuple[Position, ...]]:
+    return {step.route for each in plan.robots for step in each.steps if isinstance(step, Transit)}
+
+
+def _in_one(
+    steps: Iterable[Step], joints: Collection[Corner | None], alone: Collection[tuple[Position, ...]]
+) -> Iterator[Step]:
+    """Yield the steps, transits in one but where others met, and but those on routes that stay alone."""
     last: Step | None = None
     for step in steps:
         corner = None if last is None else _corner(last, step)
         if corner is not None and corner not in joints:
             assert isinstance(last, Transit)
             assert isinstance(step, Transit)
-            last = replace(last, end=step.end, route=(*last.route, *step.route[1:]))
-            continue
+            if last.route not in alone and step.route not in alone:
+                last = replace(last, end=step.end, route=(*last.route, *step.route[1:]))
+                continue
         if last is not None:
             yield last
         last = step

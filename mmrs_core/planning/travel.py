@@ -467,6 +467,18 @@ class Travel:
     def _across(self, start: Position, goal: Position) -> Route | str:
         return self._routed(start, goal, level=self._altitude)
 
+    def above(self, start: Position, goal: Position, level: float) -> tuple[Position, ...] | None:
+        """Return a path up to a level, along it and down; None where that is blocked, too high or not asked.
+
+        Args:
+            start, goal: of the path.
+            level: metres, higher than both.
+        """
+        fits = self.kinematics.launches and self._within(level) == level and start[:2] != goal[:2]
+        if not fits or self.entries or self.exits:
+            return None
+        return self._raised(start, goal, level)
+
     def _routed(self, start: Position, goal: Position, level: float | None = None) -> Route | str:
         """Return the route at a level where that is clear, else the quickest; or why there is none."""
         points = self._path(start, goal, level)

@@ -1,4 +1,4 @@
-"""Robots that share a corridor wait until another one signals that it is out of the way."""
+"""Robots keep apart by signals and levels: they wait for each other in corridors, and cross elsewhere."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -105,3 +105,38 @@ def test_a_drone_from_afar_waits_near_the_end_of_the_corridor():
         if isinstance(one, Transit) and isinstance(two, Await)
     ]
     assert any(dist(stop, (0.0, 150.0, 20.0)) < 60.0 for stop in stops)
+
+
+def crossing(ceiling):
+    """Return two drones whose paths cross, and whose times are uncertain by a third."""
+    team = [
+        with_kinematics(robot(f"r{k}", (600.0 * k, 0.0, 0.0)), timing=LegTiming(spread=0.3), ceiling=ceiling)
+        for k in (0, 1)
+    ]
+    works = {f"t{k}": {f"r{k}": visit((600.0 - 600.0 * k, 1200.0, 20.0))} for k in (0, 1)}
+    return scene(team, works, minimum_separation=5.0)
+
+
+def metres(each):
+    routes = (step.route for step in each.steps if isinstance(step, Transit))
+    return sum(dist(*leg) for route in routes for leg in pairwise(route))
+
+
+def test_drones_that_may_be_early_or_late_cross_one_above_the_other():
+    whole = crossing(ceiling=120.0)
+    found, alone = plan(whole), plan(replace(whole, minimum_separation=None))
+    assert complaints(whole, found) == []
+    assert first_conflict(whole, found, distance_to_keep(whole)) is None
+    highest = max(place[2] for step in steps(found, Transit) for place in step.route)
+    assert highest >= 20.0 + distance_to_keep(whole)
+    assert alone.makespan < found.makespan < alone.makespan + 20.0
+    for each, before in zip(found.robots, alone.robots, strict=True):
+        assert each.length - before.length == pytest.approx(metres(each) - metres(before))
+
+
+def test_below_a_low_ceiling_drones_that_cross_wait_for_each_other():
+    whole = crossing(ceiling=24.0)
+    found = plan(whole)
+    assert first_conflict(whole, found, distance_to_keep(whole)) is None
+    assert max(place[2] for step in steps(found, Transit) for place in step.route) <= 24.0
+    assert steps(found, Await)
