@@ -1,6 +1,6 @@
 from dataclasses import replace
 from itertools import pairwise
-from math import dist
+from math import dist, inf
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import Traffic, distance_to_keep, first_conflict, stacked_altitudes
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Policy, Transit
+from mmrs_core.scene import Launch, Policy, Transit
 
 
 def test_robots_at_neighbouring_homes_meet_nobody():
@@ -91,10 +91,11 @@ def test_robots_keep_apart_also_where_charging_takes_less_time_than_planned():
     assert not Traffic(whole, found, 10.0, timing=Team(whole).timelines(hasty=True)).conflicts
 
 
-def nearest(whole, found, name, place):
-    """Return how near a planned robot comes to a place."""
+def nearest(whole, found, name, place, until=inf):
+    """Return how near a planned robot comes to a place on the legs that it begins by a time."""
     steps = next(each.steps for each in found.robots if each.robot == name)
-    legs = [leg for step in steps if isinstance(step, Transit) for leg in pairwise(step.route)]
+    transits = [step for step in steps if isinstance(step, Transit) and step.begin <= until]
+    legs = [leg for step in transits for leg in pairwise(step.route)]
     begins, ends = np.array(legs).swapaxes(0, 1)
     return float(paired_distances(begins, ends, np.array(place), np.array(place)).min())
 
@@ -150,7 +151,9 @@ def test_a_way_keeps_away_from_a_robot_that_waits_on_the_ground():
     whole = scene(team, works, after=[("a", "b")], minimum_separation=6.0)
     found = plan(whole)
     assert complaints(whole, found) == []
-    assert nearest(whole, found, "r1", team[1].home) >= 6.0
+    assert first_conflict(whole, found, distance_to_keep(whole)) is None
+    (launched,) = (step.end for step in found.robots[1].steps if isinstance(step, Launch))
+    assert nearest(whole, found, "r1", team[1].home, until=launched - 1e-6) >= 6.0
 
 
 def test_work_over_a_robot_that_stays_at_home_is_refused_with_both_robots_and_the_distance():
