@@ -353,8 +353,9 @@ class _Explaining:
 def _waits_in(chain: Sequence[Link]) -> str:
     """Return which robots wait for tasks of others, in words."""
     waits = [(one, two) for one, two in pairwise(chain) if one.robot != two.robot]
+    whose = [f"'{one.task}' of '{one.robot}'" if one.task else f"'{one.robot}'" for one, _ in waits]
     return ", ".join(
-        f"'{two.robot}' waits for '{one.task}' of '{one.robot}'" for one, two in waits[:_NEAREST]
+        f"'{two.robot}' waits for {what}" for what, (_, two) in zip(whose[:_NEAREST], waits, strict=False)
     )
 
 
