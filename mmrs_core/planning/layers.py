@@ -2,7 +2,7 @@
 
 A node of the search is a place (start, goal, a corner of an area, or where a path turns from one radio's
 range into another's) at a height (that of start or goal, just above or below an area, or where two ranges
-meet). A* with the exact time of a free path as its bound.
+meet). A* (Hart, Nilsson and Raphael, 1968) with the exact time of a free path as its bound.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""From decisions to times: jobs one after the other, each shared out as well as can be by then."""
+"""From decisions to times: jobs one after the other, each shared out as well as can be by then.
+
+That is the serial scheme that generates schedules (Kelley, 1963; Kolisch, 1996).
+"""
 
 from __future__ import annotations
 

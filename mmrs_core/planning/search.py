@@ -1,4 +1,8 @@
-"""A seeded local search for decisions with which the last robot is back early."""
+"""A seeded local search for decisions with which the last robot is back early.
+
+It begins with the best of some constructed decisions, changes some at random, and keeps what is better (Aarts
+and Lenstra, 1997).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Shares a work out among robots so that the last of them is back as early as possible."""
+"""Shares a work out among robots so that the last of them is back as early as possible.
+
+The time by which all must be back is halved in on; each robot takes of what is left, in order, as much as it
+can by then (chains on chains: Pınar and Aykanat, 2004).
+"""
 
 from __future__ import annotations
 

@@ -5,6 +5,7 @@ signal ends a wait as soon as the other robot is out of the way. Where two robot
 waits before a move of its path until the other one begins a later move, as trains do on a single track; or
 by the clock, where that costs less. So robots follow each other through corridors, and relays go home. Where
 robots fly, one of them may go higher on that leg, as flights at other levels do that cross each other.
+Such waits are those of job shops in which nothing is stored between machines (Mascis and Pacciarelli, 2002).
 """
 
 from __future__ import annotations

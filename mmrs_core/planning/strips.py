@@ -2,7 +2,7 @@
 
 The strip is cut, not its centre line. A swath follows the middle of what there is in its strip, even
 outside of the polygons, and steps aside only where the robot may not be. Swaths run along x; polygons
-to be swept at an angle are turned beforehand.
+to be swept at an angle are turned beforehand. Strips are cut into cells at corners (Choset and Pignon, 1998).
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Orders strokes so that the hops between them are short: nearest end first, then improved."""
+"""Orders strokes so that the hops between them are short: nearest end first, then improved.
+
+Parts are reversed (2-opt: Croes, 1958) and short runs moved (or-opt: Or, 1976) until neither helps; then
+neighbouring parts are swapped at random, and both tried again (Lourenço, Martin and Stützle, 2003).
+"""
 
 from __future__ import annotations
 
