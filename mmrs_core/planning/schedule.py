@@ -25,6 +25,9 @@ _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
 _MOST_CANDIDATES = 3000
 """Candidates for shares, with what has been found out about them, that are kept for later schedules."""
 
+_ROUNDING = 1e-6
+"""Seconds by which sums of times may be wrong."""
+
 _MOST_ALONE = 8
 """Robots that are tried for work that one is to do: one that begins later may need fewer sorties."""
 
@@ -123,14 +126,18 @@ class _Scheduling:
         self._bounds: dict[str, Mapping[str, Bounds]] = {}
         self._spans: dict[str, tuple[float, float]] = {}
         self._busy: set[str] = set()
+        self._left = sum(map(self._time_left, self._states.values()))
+        self._latest = 0.0
 
     def run(self, jobs: Sequence[Job]) -> Schedule | Shortfall:
         place = {name: i for i, name in enumerate(self._decisions.order)}
         waiting = sorted(jobs, key=lambda job: place[job.name])
+        work = sum(map(self._fewest_seconds, waiting))
         while waiting:
             job = next(job for job in waiting if all(name in self._ends for name in job.after))
             waiting.remove(job)
-            if not self._do(job) or not self._in_time(waiting):
+            work -= self._fewest_seconds(job)
+            if not self._do(job) or work > self._left + _ROUNDING or self._latest > self._limit:
                 return Shortfall(job.name, len(waiting) + 1)
         pilots = self._team.pilots
         backs = {
@@ -140,14 +147,14 @@ class _Scheduling:
         }
         return Schedule(self._states, self._spans, self._ends, backs)
 
-    def _in_time(self, waiting: Iterable[Job]) -> bool:
-        """Return whether jobs so far have ended by the limit, and robots have time left for the others."""
-        if self._limit == inf:
-            return True
-        left = sum(max(0.0, self._limit - state.time) for state in self._states.values())
-        single = (job.name for job in waiting if job.choice is None and job.tasks())
-        work = sum(map(self._team.fewest_seconds, single))
-        return work <= left and max((end for _, end in self._spans.values()), default=0.0) <= self._limit
+    def _time_left(self, state: State) -> float:
+        """Return the seconds that a robot has left by the limit; none are asked for without one."""
+        return 0.0 if self._limit == inf else max(0.0, self._limit - state.time)
+
+    def _fewest_seconds(self, job: Job) -> float:
+        """Return seconds of work that a job takes at least, as far as a limit makes that of interest."""
+        single = self._limit < inf and job.choice is None and job.tasks()
+        return self._team.fewest_seconds(job.name) if single else 0.0
 
     def _do(self, job: Job) -> bool:
         if not job.tasks():
@@ -158,9 +165,12 @@ class _Scheduling:
         done = self._chosen_or_shared(job, self._fillings(job)) if self._record else self._remembered(job)
         if done is None:
             return False
+        for name, state in done.states.items():
+            self._left += self._time_left(state) - self._time_left(self._states[name])
         self._states.update(done.states)
         self._ends[job.name], self._bounds[job.name] = done.ends, done.bounds
         self._spans[job.name] = (done.begin, max(done.ends.values()))
+        self._latest = max(self._latest, self._spans[job.name][1])
         self._busy |= done.ends.keys()
         return True
 
