@@ -10,7 +10,7 @@ from plan_replay import complaints
 
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import distance_to_keep, first_conflict
-from mmrs_core.scene import Await, Corridor, Recover, Serve, Signal, Transit
+from mmrs_core.scene import Await, Corridor, Launch, Recover, Serve, Signal, Transit
 from mmrs_runtime.timing import LegTiming
 
 LANE = Corridor("lane", ((0.0, 50.0), (0.0, 150.0)), 10.0, low=18.0, high=22.0)
@@ -130,6 +130,7 @@ def test_drones_that_may_be_early_or_late_cross_one_above_the_other():
     highest = max(place[2] for step in steps(found, Transit) for place in step.route)
     assert highest >= 20.0 + distance_to_keep(whole)
     assert alone.makespan < found.makespan < alone.makespan + 20.0
+    assert [each.up for each in steps(found, Launch)] == [each.up for each in steps(alone, Launch)]
     for each, before in zip(found.robots, alone.robots, strict=True):
         assert each.length - before.length == pytest.approx(metres(each) - metres(before))
 
