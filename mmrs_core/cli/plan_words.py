@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mmrs_core.cli.output import counted, table
 from mmrs_core.pictures.explanations import sections_of
-from mmrs_core.pictures.figures import clock, energy, length, telling, within
+from mmrs_core.pictures.figures import clock, energy, length, within
 from mmrs_core.scene import Plan, RobotPlan, Scene, Serve, all_steps
 
 if TYPE_CHECKING:
@@ -39,10 +39,11 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
 
 
 def _within(plan: Plan) -> str:
-    """Return by how much a plan is longer than any at most, where what is known says something."""
-    if not telling(plan.makespan, plan.lower_bound):
+    """Return by how much a plan is longer than any at most, and by which times where they differ."""
+    if not plan.lower_bound:
         return ""
-    return f" ({within(plan.makespan, plan.lower_bound)})"
+    planned = f"planned as {clock(plan.planned)}, which is " if plan.planned else ""
+    return f" ({planned}{within(plan.planned or plan.makespan, plan.lower_bound)})"
 
 
 def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
@@ -50,6 +51,7 @@ def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
     return {
         "mission": scene.name,
         "makespan": plan.makespan,
+        "plannedMakespan": plan.planned or plan.makespan,
         "lowerBound": plan.lower_bound or None,
         "robots": [
             {

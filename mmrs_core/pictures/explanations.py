@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mmrs_core.pictures.figures import clock, telling, within
+from mmrs_core.pictures.figures import clock, within
 
 if TYPE_CHECKING:
     from mmrs_core.planning.explaining import Alternative, PlanExplanation, TaskExplanation
@@ -54,20 +54,21 @@ def _time(explanation: PlanExplanation) -> ExplanationPart:
         for link in chain
     ]
     more = len(explanation.chain) - len(chain)
-    sentences = [_last(explanation), _compared(explanation.makespan, explanation.lower_bound)]
+    sentences = [_last(explanation), _compared(explanation)]
     sentences += [f"{more} more rows are left out"] if more else []
     head = ("from", "to", "robot", "task", "time spent")
     return ExplanationPart("What determines the mission time", tuple(sentences), head, tuple(rows))
 
 
-def _compared(makespan: float, bound: float) -> str:
+def _compared(explanation: PlanExplanation) -> str:
+    bound, planned = explanation.lower_bound, explanation.planned
     if not bound:
         return "how much sooner another plan could end is not known"
-    if round(makespan - bound) == 0:
-        return "no plan ends sooner"
-    if telling(makespan, bound):
-        return f"no plan ends before {clock(bound)}, so this one is {within(makespan, bound)}"
-    return f"no plan ends before {clock(bound)}; how near to that one can come is not known"
+    this = f"by the planner's times this one ends at {clock(planned)}: " if planned else ""
+    if round((planned or explanation.makespan) - bound) == 0:
+        return f"{this}no plan ends sooner"
+    near = within(planned or explanation.makespan, bound)
+    return f"{this}no plan ends before {clock(bound)}, so this one is {near}"
 
 
 def _last(explanation: PlanExplanation) -> str:

@@ -70,19 +70,17 @@ def heights(low: float, high: float) -> str:
     return f"up to {length(high)}" if isinf(low) else f"{length(low)} to {length(high)}"
 
 
-_TELLING = 1.5
-"""Times the lower bound up to which a mission time is compared with it."""
-
-
-def telling(makespan: float, lower_bound: float) -> bool:
-    """Return whether a mission time is near enough to its lower bound to be compared with it."""
-    return makespan <= _TELLING * lower_bound
+_NEAR = 1.5
+"""Times the lower bound up to which a plan's distance from it is given in per cent."""
 
 
 def within(makespan: float, lower_bound: float) -> str:
     """Return by how much a plan is longer than any at most.
 
-    >>> within(103.0, 100.0)
-    'within 3 % of the best possible'
+    >>> within(103.0, 100.0), within(171.9, 100.0)
+    ('within 3 % of the best possible', 'at most 1.72 times the best possible')
     """
-    return f"within {ceil(100.0 * (makespan / lower_bound - 1.0) - 1e-6)} % of the best possible"
+    per_cent = ceil(100.0 * (makespan / lower_bound - 1.0) - 1e-6)
+    if makespan > _NEAR * lower_bound:
+        return f"at most {1.0 + per_cent / 100.0:.2f} times the best possible"
+    return f"within {per_cent} % of the best possible"

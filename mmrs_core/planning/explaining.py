@@ -95,7 +95,7 @@ class PlanExplanation:
 
     Attributes:
         makespan: of the plan.
-        lower_bound: seconds that no plan's makespan falls below; 0: nothing is known.
+        lower_bound, planned: of the plan.
         backs: by robot: seconds after the start at which it is back, last one first.
         chain: what the mission time is spent on.
         limits: those that cost most first.
@@ -112,6 +112,7 @@ class PlanExplanation:
     tasks: tuple[TaskExplanation, ...]
     idle: Mapping[str, tuple[str, Alternative] | None]
     apart: bool = False
+    planned: float = 0.0
 
 
 def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanation:
@@ -156,6 +157,7 @@ class _Explaining:
             tuple(tasks),
             {each.robot: _best_for(each.robot, tasks) for each in self._plan.robots if not each.steps},
             distance_to_keep(self._scene) is not None,
+            self._timed.planned,
         )
 
     def _task(self, job: Job) -> TaskExplanation:

@@ -172,7 +172,8 @@ class Plan:
         begins, ends: by task, seconds after the mission's start.
         notes: assumptions to show, such as flat terrain.
         left_out: what is not done of tasks, since it cannot be reached.
-        lower_bound: seconds that no plan's makespan falls below; 0: nothing is known.
+        lower_bound: seconds that no plan's makespan by the planner's times falls below; 0: nothing is known.
+        planned: makespan by the planner's times, where `makespan` is another; 0: it is the same.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -182,3 +183,4 @@ class Plan:
     notes: tuple[str, ...] = ()
     left_out: tuple[Omission, ...] = ()
     lower_bound: float = 0.0
+    planned: float = 0.0

@@ -18,7 +18,7 @@ Key = TypeVar("Key")
 Value = TypeVar("Value")
 
 SAME = 0.01
-"""Share by which times may differ that a bound of the planner is compared with."""
+"""Share by which a makespan may differ from the planner's and yet count as the same."""
 
 
 def as_simulated(plan: Plan, run: SimulatedRun, trace: Trace, robots: Collection[RobotProgram]) -> Plan:
@@ -45,7 +45,8 @@ def as_simulated(plan: Plan, run: SimulatedRun, trace: Trace, robots: Collection
         makespan=makespan,
         begins={**plan.begins, **{task: min(step.begin for step in own) for task, own in served.items()}},
         ends={**plan.ends, **{task: max(step.end for step in own) for task, own in served.items()}},
-        lower_bound=min(plan.lower_bound, makespan) if alike else 0.0,
+        lower_bound=min(plan.lower_bound, makespan) if alike else plan.lower_bound,
+        planned=0.0 if alike else plan.makespan,
         notes=(*dict.fromkeys(_choices(run.records, robots)), *plan.notes),
     )
 

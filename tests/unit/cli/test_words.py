@@ -84,13 +84,18 @@ def test_a_plan_is_told_as_values_too(scene, plan):
     [
         (71.0, "1:12 (within 2 % of the best possible)"),
         (72.0, "1:12 (within 0 % of the best possible)"),
-        (30.0, "1:12"),
+        (30.0, "1:12 (at most 2.40 times the best possible)"),
         (0.0, "1:12"),
     ],
 )
 def test_a_mission_time_is_compared_with_the_least_possible_one(scene, plan, least, said):
     first = next(plan_lines(scene, replace(plan, makespan=72.0, lower_bound=least)))
     assert first.endswith(f"mission time {said}")
+
+
+def test_a_lower_bound_is_compared_with_the_planned_time_where_the_simulated_one_is_another(scene, plan):
+    first = next(plan_lines(scene, replace(plan, makespan=72.0, lower_bound=80.0, planned=100.0)))
+    assert first.endswith("mission time 1:12 (planned as 1:40, which is within 25 % of the best possible)")
 
 
 def test_long_cells_are_cut_but_for_the_last():

@@ -1,6 +1,7 @@
 import json
 from dataclasses import replace
 
+import pytest
 from plain_scenes import robot, scene, task, visit
 
 from mmrs_core.cli.plan_words import explanation_lines, explanation_summary
@@ -51,6 +52,26 @@ def test_an_explanation_reads_well_and_is_json():
     explanation = explain(whole, plan(whole))
     assert list(explanation_lines(explanation)) == TEXT
     assert "lastRobot" in json.dumps(explanation_summary(explanation), allow_nan=False)
+
+
+@pytest.mark.parametrize(
+    ("bound", "planned", "said"),
+    [
+        (30.0, 0.0, "no plan ends before 0:30, so this one is at most 2.89 times the best possible"),
+        (
+            100.0,
+            120.0,
+            "by the planner's times this one ends at 2:00: no plan ends before 1:40,"
+            " so this one is within 20 % of the best possible",
+        ),
+        (120.0, 120.0, "by the planner's times this one ends at 2:00: no plan ends sooner"),
+        (0.0, 120.0, "how much sooner another plan could end is not known"),
+    ],
+)
+def test_an_explanation_always_compares_a_plan_with_its_bound(bound, planned, said):
+    whole = scene([robot("Alba")], {"gate": visit((-300.0, 0.0, 20.0))})
+    found = replace(explain(whole, plan(whole)), lower_bound=bound, planned=planned)
+    assert list(explanation_lines(found))[3] == f"  {said}"
 
 
 def test_an_alternative_that_ends_sooner_before_robots_wait_to_keep_apart_says_so():

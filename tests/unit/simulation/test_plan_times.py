@@ -33,7 +33,8 @@ def timed(steps, own, *made):
     ]
     records = [StepRecord("r", "a", i, i, time, label, move) for i, (label, move, time) in enumerate(made)]
     run = SimpleNamespace(records=records, ending=SimpleNamespace(time=records[-1].time))
-    plan = Plan((RobotPlan("a", tuple(steps), busy=100.0, energy=50.0),), 100.0, {"look": 0.0}, {"look": 9.0})
+    robot = RobotPlan("a", tuple(steps), busy=100.0, energy=50.0)
+    plan = Plan((robot,), 100.0, {"look": 0.0}, {"look": 9.0}, lower_bound=99.5)
     return as_simulated(plan, run, Trace(tuple(links)), ())
 
 
@@ -86,6 +87,14 @@ def test_a_choice_ends_with_the_arm_that_was_taken_and_the_other_lasts_as_planne
 def test_the_last_step_ends_when_the_robot_has_stopped():
     plan = timed([go(0.0, 10.0)], ["m1"], ("end", "m1", 12.0), ("take", "m1", 12.0), ("end", "stop", 12.5))
     assert (spans(plan), plan.makespan) == ([(0.0, 12.5)], 12.5)
+
+
+@pytest.mark.parametrize(
+    ("simulated", "least", "planned"), [(99.8, 99.5, 0.0), (99.2, 99.2, 0.0), (80.0, 99.5, 100.0)]
+)
+def test_the_lower_bound_stays_with_the_makespan_that_it_is_a_bound_of(simulated, least, planned):
+    plan = timed([go(0.0, 10.0)], ["m1"], ("end", "m1", simulated))
+    assert (plan.makespan, plan.lower_bound, plan.planned) == (simulated, least, planned)
 
 
 def test_time_at_home_is_not_away():
