@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from mmrs_core.planning.corridors import crossings
 from mmrs_core.planning.jobs import Job, is_control
@@ -161,6 +162,36 @@ def why_idle(team: Team, robot: str) -> str:
     for task in team.groups:
         reasons.setdefault(_reason(team, task, robot), []).append(task)
     return "; ".join(f"{_some(tasks)}: {reason}" for reason, tasks in reasons.items())
+
+
+def idle_apart(scene: Scene, plan: Plan, tried: Iterable[tuple[float, frozenset[str]]]) -> Plan:
+    """Return a plan with the reason of each robot that has no work only because robots keep apart.
+
+    That is known where every plan that was found without it ends later, before its robots are kept apart,
+    than one with it.
+
+    Args:
+        scene: of the plan.
+        plan: as its robots keep apart.
+        tried: the makespan and the robots without work of each plan before that.
+    """
+    if scene.minimum_separation is None:
+        return plan
+    soonest = dict[tuple[str, bool], float]()
+    idle = {each.robot for each in plan.robots if each.idle}
+    for makespan, without in tried:
+        for robot in idle:
+            key = robot, robot in without
+            soonest[key] = min(soonest.get(key, plan.makespan), makespan)
+
+    def explained(each: RobotPlan) -> RobotPlan:
+        with_it, without = (soonest.get((each.robot, idle), plan.makespan) for idle in (False, True))
+        if not each.idle or round(without - with_it) <= 0:
+            return each
+        reason = f"it would make the mission end {without - with_it:.0f} s sooner if robots did not keep"
+        return replace(each, idle=f"{each.idle}; {reason} {scene.minimum_separation:g} m apart")
+
+    return replace(plan, robots=tuple(map(explained, plan.robots)))
 
 
 def _some(tasks: Sequence[str]) -> str:

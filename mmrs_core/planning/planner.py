@@ -12,7 +12,7 @@ from operator import itemgetter
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.assembly import assemble
+from mmrs_core.planning.assembly import assemble, idle_apart
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
@@ -41,10 +41,17 @@ class _Find(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """How decisions are found, and the plans so far whose robots are kept apart at a cost, if at all."""
+    """How decisions are found, and what was found so far.
+
+    Attributes:
+        find: decisions.
+        dear: plans whose robots are kept apart at a cost, if at all.
+        tried: of each plan before its robots are kept apart: its makespan, and the robots without work.
+    """
 
     find: _Find
     dear: list[tuple[Team, Plan]]
+    tried: list[tuple[float, frozenset[str]]]
 
 
 def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
@@ -77,14 +84,14 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     find = partial(find_decisions, jobs=jobs, effort=effort)
     best: Mapping[str, int] = {}
     found, refusal = None, InfeasibleError("no plan")
-    dear = list[tuple[Team, Plan]]()
+    dear, tried = list[tuple[Team, Plan]](), list[tuple[float, frozenset[str]]]()
     tries = ((wanted, partial(find, seed=seed)) for wanted in ({}, *robot_counts(team, jobs)))
     longer = ((best, partial(find, seed=seed + 1, long=True)) for _ in range(effort.timed))
     for wanted, each in chain(tries, longer):
         if found is not None and effort.over:
             break
         try:
-            made = _plan_asking(teams, wanted, jobs, _Search(each, dear), found)
+            made = _plan_asking(teams, wanted, jobs, _Search(each, dear, tried), found)
         except InfeasibleError as error:
             refusal = refusal if wanted else error
             continue
@@ -92,7 +99,7 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     found = _signalled(scene, dear, found)
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
-    return replace(found, lower_bound=effort.least)
+    return replace(idle_apart(scene, found, tried), lower_bound=effort.least)
 
 
 def _signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | None) -> Plan | None:
@@ -274,6 +281,8 @@ def _plan_of(
     if isinstance(recorded, Shortfall):
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
     first = assemble(team, jobs, recorded)
+    idle = frozenset(each.robot for each in first.robots if not each.steps)
+    search.tried.append((first.makespan, idle))
     if _better(first, best) is best:
         raise _NotBetterError("no better plan")
     made = _kept_apart(team, jobs, search, decisions, first, best)

@@ -390,6 +390,25 @@ def test_a_robot_without_work_has_a_reason_and_one_with_work_has_none():
     assert "'b': has no work for it" in idle.idle
 
 
+def test_a_robot_without_work_names_the_separation_only_where_it_is_known_to_be_idle_for_it():
+    team = (robot("r1"), robot("r2", (32.0, 0.0, 0.0)))
+    places = {"a": (50.0, 60.0, 20.0), "b": (70.0, 60.0, 20.0), "c": (60.0, 70.0, 20.0)}
+    works = {name: visit(place) for name, place in places.items()}
+    apart = scene(team, works, minimum_separation=30.0)
+    free = plan(replace(apart, minimum_separation=None))
+    assert all(each.steps for each in free.robots)
+    assert sound(apart).makespan - free.makespan == pytest.approx(4.0, abs=0.5)
+    assert (
+        sound(apart)
+        .robots[1]
+        .idle.endswith("; it would make the mission end 4 s sooner if robots did not keep 30 m apart")
+    )
+    alone = sound(scene(team, {"a": works["a"]}, minimum_separation=30.0))
+    assert [each.idle for each in alone.robots if each.idle] == [
+        "'a': one robot must do all of it, and the mission ends no later with another one"
+    ]
+
+
 def test_too_few_robots_of_one_sort_are_named_with_those_that_they_cannot_share_with():
     works = {
         "a": {
