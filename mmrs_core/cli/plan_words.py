@@ -106,6 +106,7 @@ def explanation_summary(explanation: PlanExplanation) -> Mapping[str, object]:
             {"name": each.name, "cost": each.cost, "margin": each.margin or None}
             for each in explanation.limits
         ],
+        "alternativesBeforeSeparation": explanation.apart,
         "tasks": [
             {
                 "name": task.task,

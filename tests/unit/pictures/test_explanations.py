@@ -80,6 +80,7 @@ def test_an_alternative_that_ends_sooner_before_robots_wait_to_keep_apart_says_s
     whole = scene(team, {"gate": visit((-300.0, 0.0, 20.0))}, minimum_separation=5.0)
     found = explain(whole, plan(whole))
     sooner = Alternative(("Brezza",), -76.0, -76.0, 5.0)
+    assert explanation_summary(found)["alternativesBeforeSeparation"]
     tasks = tuple(replace(each, alternatives=(sooner,)) for each in found.tasks)
     lines = list(explanation_lines(replace(found, tasks=tasks, idle={"Brezza": ("gate", sooner)})))
     assert lines[lines.index("Why these robots") + 1] == (
