@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, pairwise, product
-from math import ceil, dist, hypot, inf, sqrt
+from itertools import combinations, product
+from math import dist, hypot, inf, sqrt
 from typing import TypeAlias
 
 import numpy as np
@@ -31,12 +31,6 @@ _ASIDE = 1.1
 
 _PLACES = 33
 """Places on each leg that are looked at for the farthest one out of range."""
-
-_MOST_RELAYS = 3
-"""Relays in a row that are tried where tasks are out of range."""
-
-_HALVINGS = 60
-"""Times that the stretch is cut on which the position of a relay is looked for."""
 
 
 @dataclass(frozen=True)
@@ -273,33 +267,6 @@ def _crossings(one: _Disc, two: _Disc) -> Iterator[tuple[float, float]]:
         yield x + along * east - sign * aside * north, y + along * north + sign * aside * east
 
 
-def remedies_for(
-    robot: Robot, relays: Sequence[Relay], error: float, strokes: Sequence[Stroke]
-) -> Iterator[str]:
-    """Yield what would bring strokes into a robot's range: a relay, or a short chain, or a farther range."""
-    reach = reach_of(robot, relays, error)
-    if reach is None or in_range_of(reach, strokes):
-        return
-    outside = [each for each in strokes if not reach.contains(each.points, unsure(each) - SLACK)]
-    points = np.array([point for each in outside for point in each.points])
-    needed = error + max(map(unsure, outside))
-    for count in range(1, _MOST_RELAYS + 1):
-        chains = [_chain_between(each, points, needed, robot.home[2], count) for each in reach.centres]
-        for chain in sorted(chains, key=lambda each: each[0].range):
-            more = reach_of(robot, [*relays, *chain], error)
-            if more is not None and in_range_of(more, strokes):
-                break
-        else:
-            continue
-        at = " and ".join(
-            "({:.0f}, {:.0f}, {:.0f})".format(*(round(p) + 0.0 for p in each.position)) for each in chain
-        )
-        yield f"{'a relay' if count == 1 else f'{count} relays'} of range {chain[0].range:.0f} m at {at}"
-        break
-    farthest = float(np.linalg.norm(points - np.array(robot.home), axis=1).max()) + needed
-    yield f"a communicationRange of {ceil(farthest)} m"
-
-
 def in_range_of(reach: Reach, strokes: Iterable[Stroke]) -> bool:
     """Return whether a robot is in range all along strokes, wherever their objects are."""
     return all(reach.contains(each.points, unsure(each) - SLACK) for each in strokes)
@@ -308,26 +275,3 @@ def in_range_of(reach: Reach, strokes: Iterable[Stroke]) -> bool:
 def unsure(stroke: Stroke) -> float:
     """Return by how many metres an object at the end of a stroke may be elsewhere."""
     return 0.0 if stroke.object is None else stroke.object_tolerance or 0.0
-
-
-def _chain_between(
-    station: Position, points: Floats, needed: float, ground: float, count: int
-) -> list[Relay]:
-    """Return relays of the least range that lead from a station to some points, all on the ground."""
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-
-    def at(share: float) -> list[Relay]:
-        places = [station]
-        for i in range(1, count + 1):
-            part = share * i / count
-            east, north = (a + part * (b - a) for a, b in zip(station[:2], middle[:2].tolist(), strict=True))
-            places.append((float(round(east)), float(round(north)), ground))
-        farthest = float(np.linalg.norm(points - np.array(places[-1]), axis=1).max()) + needed
-        reach = float(ceil(max(farthest, *(dist(a, b) for a, b in pairwise(places)))))
-        return [Relay(str(i), place, reach) for i, place in enumerate(places[1:])]
-
-    low, high = 0.0, 1.0
-    for _ in range(_HALVINGS):
-        one, two = low + (high - low) / 3.0, high - (high - low) / 3.0
-        low, high = (low, two) if at(one)[0].range <= at(two)[0].range else (one, high)
-    return min(at(low), at(high), key=lambda each: each[0].range)

@@ -105,7 +105,7 @@ def _lifetimes(
         def changed(robot: Robot) -> Robot:
             return _lasting(change(robot), factor * needed[robot.name] / lifetime_of(scene, robot))
 
-        return _plannable(_with(scene, [*needed], changed), jobs, team.spaces)
+        return is_plannable(_with(scene, [*needed], changed), jobs, team.spaces)
 
     if plannable(1.0):
         return needed, ""
@@ -197,7 +197,7 @@ def _homes(team: Team, jobs: Sequence[Job], task: str, name: str, index: int) ->
     if away > 0.0 and len(jobs) * len(scene.robots) <= _MOST_PAIRS and _fits(team, task, nearer(0.0)):
         metres = floor(_last(lambda share: _fits(team, task, nearer(share)), 0.0, away))
         home = nearer(metres).home
-        if _plannable(_with(scene, [name], lambda _: nearer(metres)), jobs):
+        if is_plannable(_with(scene, [name], lambda _: nearer(metres)), jobs):
             far = dist(home[:2], goal[:2])
             yield f"a home at ({home[0]:.0f}, {home[1]:.0f}), {far:.0f} m away,"
 
@@ -213,7 +213,7 @@ def for_diversions(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
 
     def plannable(away: float) -> bool:
         landings = [_landing(team, name, away) for name in kept]
-        return _plannable(replace(scene, areas=(*scene.areas, *landings)), jobs, team.spaces)
+        return is_plannable(replace(scene, areas=(*scene.areas, *landings)), jobs, team.spaces)
 
     if plannable(0.0):
         pilots = [team.pilots[name] for name in kept]
@@ -222,7 +222,7 @@ def for_diversions(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
         yield f"an emergency area within {metres} m of each home"
     events = dict.fromkeys(event for each in kept.values() for event in each.events)
     returning = tuple(Policy(event, RETURN) for event in events)
-    if _plannable(replace(scene, policies=(*returning, *scene.policies)), jobs, team.spaces):
+    if is_plannable(replace(scene, policies=(*returning, *scene.policies)), jobs, team.spaces):
         yield f"RETURN as the response to {' and '.join(events)}"
 
 
@@ -274,7 +274,7 @@ def for_all_charges(team: Team, jobs: Sequence[Job], job: Job) -> Iterator[str]:
     lifetimes = {lifetime_of(scene, scene.robot(name)) for name in able}
 
     def plannable(change: Callable[[Robot], Robot]) -> bool:
-        return _plannable(_with(scene, able, change), jobs, team.spaces)
+        return is_plannable(_with(scene, able, change), jobs, team.spaces)
 
     enough = _least(lambda each: plannable(lambda robot: _lasting(robot, each)))
     if max(lifetimes) < inf and enough is not None:
@@ -286,11 +286,11 @@ def for_all_charges(team: Team, jobs: Sequence[Job], job: Job) -> Iterator[str]:
         yield "a rechargeTime for the batteries"
     if job.choice is None and team.tasks[job.name].wanted is not None:
         for count in range(1, team.sharers(job.name) + 1):
-            if _plannable(team.wanting({job.name: count}).scene, jobs):
+            if is_plannable(team.wanting({job.name: count}).scene, jobs):
                 yield f"robotsWanted of {count}"
                 break
     for count in range(1, _MOST_ROBOTS + 1):
-        if _plannable(_with_more(scene, able[0], count), jobs):
+        if is_plannable(_with_more(scene, able[0], count), jobs):
             yield f"{counted(count).replace(' ', ' more ')} like '{able[0]}'"
             break
 
@@ -330,7 +330,7 @@ def _fits(
     return alone.forwards(task, robot.name) is not None and not alone.too_long(task)
 
 
-def _plannable(scene: Scene, jobs: Sequence[Job], spaces: Spaces | None = None) -> bool:
+def is_plannable(scene: Scene, jobs: Sequence[Job], spaces: Spaces | None = None) -> bool:
     """Return whether even the decisions with which a search begins lead to a schedule.
 
     Args:

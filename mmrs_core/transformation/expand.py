@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from mmrs_core.contributions.rules import ElementKind, RobotKind, Rule, barriers, most_specific, robot_kind_of
 from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
 from mmrs_core.planning.positions import SLACK
-from mmrs_core.planning.reach import Reach, in_range_of, reach_of, remedies_for, unsure
-from mmrs_core.planning.remedies import or_else
+from mmrs_core.planning.radio_remedies import for_radio
+from mmrs_core.planning.reach import Reach, in_range_of, reach_of, unsure
 from mmrs_core.planning.strokes import commanded_speed
 from mmrs_core.planning.travel import kinematics_of
 from mmrs_core.scene import (
@@ -33,6 +33,9 @@ from mmrs_core.scene import (
 )
 from mmrs_core.scene.relays import Relay, relay_range, relays_of, station_of
 from mmrs_runtime.policies import in_precedence
+
+_MOST_REMEDIES = 20
+"""Tasks that can be done by no robot for which remedies are tried: the first ones."""
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
@@ -231,26 +234,29 @@ def _missing(task: Task, devices: Mapping[str, Device]) -> Iterator[str]:
 
 
 def _undoable(scene: Scene, works: SharedWorks, refusals: _Refusals, radio: _Radio) -> Iterator[str]:
-    for task in scene.tasks:
-        if task.part.is_a(CONTROL_TASK) or works.able(task.name):
-            continue
+    tasks = (each for each in scene.tasks if not each.part.is_a(CONTROL_TASK) and not works.able(each.name))
+    for number, task in enumerate(tasks):
         why = "; ".join(f"{robot.name}: {refusals[task.name, robot.name]}" for robot in scene.robots)
-        remedy = or_else([*_remedies(task.name, scene.robots, refusals, radio)])
+        remedy = _remedy(task, scene, refusals, radio) if number < _MOST_REMEDIES else ""
         yield f"task '{task.name}' can be done by no robot ({why}){remedy}"
 
 
-def _remedies(task: str, robots: Sequence[Robot], refusals: _Refusals, radio: _Radio) -> Iterator[str]:
-    """Yield what would do for the nearest of the robots whose radio is all that is short."""
-    nearest = None
-    for robot in robots:
-        work = refusals.of_sorts[task][refusals.works.sorts[robot.name]]
+def _remedy(task: Task, scene: Scene, refusals: _Refusals, radio: _Radio) -> str:
+    """Return what would do for the nearest of the robots whose radio is all that is short."""
+    works = dict[str, Work]()
+    for robot in scene.robots:
+        work = refusals.of_sorts[task.name][refusals.works.sorts[robot.name]]
         if isinstance(work, Work):
-            away = float(_most_distant(work, np.array([robot.home]))[0]) - range_of(robot)
-            nearest = min(nearest or (away, robot, work), (away, robot, work), key=lambda each: each[0])
-    if nearest is not None:
-        _, robot, work = nearest
-        found = list(remedies_for(robot, radio.relays, radio.error, work.strokes))
-        yield from [f"for '{robot.name}', {each}" for each in found[:1]] + found[1:]
+            works[robot.name] = work
+    if not works:
+        return ""
+
+    def missing(robot: Robot) -> float:
+        away = _most_distant(works[robot.name], np.array([robot.home]))
+        return float(away[0]) - range_of(robot)
+
+    nearest = min((each for each in scene.robots if each.name in works), key=missing)
+    return for_radio(scene, task, works, nearest, radio.relays)
 
 
 def unfit(robot: Robot, scene: Scene) -> str | None:

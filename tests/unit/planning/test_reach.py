@@ -1,16 +1,19 @@
 """Routes that stay in range of the radio, and what would bring tasks into it, worked out by hand."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 from math import dist
 
 import pytest
-from plain_scenes import box, road, robot, scene
+from plain_scenes import DRONE, box, road, robot, scene, task
 
-from mmrs_core.errors import UnreachableError
+from mmrs_core.errors import InfeasibleError, UnreachableError
 from mmrs_core.planning.corridors import Corridors
 from mmrs_core.planning.paths import Space
-from mmrs_core.planning.reach import reach_of, remedies_for
+from mmrs_core.planning.planner import plan
+from mmrs_core.planning.radio_remedies import for_radio, remedies_for
+from mmrs_core.planning.reach import reach_of
 from mmrs_core.planning.travel import Spaces
 from mmrs_core.scene import Corridor, Part, Stroke
 from mmrs_core.scene.relays import RELAY, Relay, relays_of
@@ -29,6 +32,10 @@ def reach(*relays, range=100.0, error=0.0):
     found = reach_of(one(range), relays, error)
     assert found is not None
     return found
+
+
+def remedies(relays, strokes):
+    return [words for words, *_ in remedies_for(one(), relays, 0.0, strokes)]
 
 
 def length(route):
@@ -97,26 +104,71 @@ def test_the_goal_out_of_range_is_named_with_the_nearest_relay():
 
 def test_a_relay_that_would_do_is_named_with_its_range_and_place():
     strokes = (Stroke(((180.0, 0.0, 0.0), (180.0, 40.0, 0.0))),)
-    found = list(remedies_for(one(), (), 0.0, strokes))
+    found = remedies((), strokes)
     assert found == ["a relay of range 93 m at (92, 10, 0)", "a communicationRange of 185 m"]
 
 
 def test_a_chain_of_relays_is_named_where_one_is_not_enough():
     strokes = (Stroke(((300.0, 0.0, 0.0),)),)
-    found = list(remedies_for(one(), (), 0.0, strokes))
+    found = remedies((), strokes)
     assert found == [
         "2 relays of range 100 m at (100, 0, 0) and (200, 0, 0)",
         "a communicationRange of 300 m",
     ]
     chain = (Relay("mast", (100.0, 0.0, 0.0), 100.0),)
-    assert next(remedies_for(one(), chain, 0.0, strokes)) == "a relay of range 100 m at (200, 0, 0)"
+    assert remedies(chain, strokes)[0] == "a relay of range 100 m at (200, 0, 0)"
 
 
 def test_no_chain_is_named_where_three_are_not_enough():
     strokes = (Stroke(((401.0, 0.0, 0.0),)),)
-    assert list(remedies_for(one(), (), 0.0, strokes)) == ["a communicationRange of 401 m"]
+    assert remedies((), strokes) == ["a communicationRange of 401 m"]
     wide = (Stroke(((0.0, 150.0, 0.0), (250.0, 150.0, 0.0))),)
-    assert list(remedies_for(one(), (), 0.0, wide)) == ["a communicationRange of 292 m"]
+    assert remedies((), wide) == ["a communicationRange of 292 m"]
+
+
+def in_short(endurance, wanted=None, homes=(HOME,)):
+    """Return what is said to help robots of that endurance with a task out of range, and the scene of it."""
+    kinematics = replace(DRONE, endurance=endurance, recharge=None)
+    team = [replace(one(home=each), name=f"r{i}", kinematics=kinematics) for i, each in enumerate(homes)]
+    lines = road((180.0, 0.0, 20.0), (180.0, 40.0, 20.0), cuts=(20.0,))
+    whole = scene(team, {"a": lines}, tasks={"a": task("a", wanted=wanted)})
+    works = {each.name: lines for each in team}
+    return for_radio(replace(whole, works={}), whole.tasks[0], works, team[0], ()), whole
+
+
+def test_what_brings_a_task_into_range_would_do_where_a_plan_is_then_found():
+    words, whole = in_short(1200.0)
+    assert (
+        words == "; for 'r0', a relay of range 95 m at (93, 10, 0) or a communicationRange of 186 m would do"
+    )
+    mast = Relay("mast", (93.0, 10.0, 0.0), 95.0)
+    assert plan(replace(whole, stations=(mast,))).robots[0].steps
+    wide = replace(whole.robots[0], type=one(186.0).type)
+    assert plan(replace(whole, robots=(wide,))).robots[0].steps
+    with pytest.raises(InfeasibleError):
+        plan(whole)
+
+
+def test_what_brings_a_task_into_range_and_is_not_enough_is_named_with_what_is_short_then():
+    words, whole = in_short(30.0)
+    found = re.fullmatch(
+        r"; with a relay of range 95 m at \(93, 10, 0\), task 'a' is too long for every robot"
+        r" \(.* 36 s short\); for 'r0', a lifetime of (\d+) s \(now 38 s\) would do",
+        words,
+    )
+    assert found is not None
+    lasting = replace(whole.robots[0], kinematics=replace(DRONE, endurance=0.8 * float(found[1])))
+    mast = Relay("mast", (93.0, 10.0, 0.0), 95.0)
+    assert plan(replace(whole, robots=(lasting,), stations=(mast,))).robots[0].steps
+
+
+def test_a_range_that_is_enough_for_one_robot_only_is_not_named_where_two_are_wanted():
+    words, _ = in_short(1200.0, 2, (HOME, (20.0, 0.0, 0.0)))
+    assert words == "; for 'r0', a relay of range 95 m at (93, 10, 0) would do"
+    words, _ = in_short(1200.0, 2, (HOME, (-70.0, 0.0, 0.0)))
+    assert words.startswith(
+        "; with a relay of range 95 m at (93, 10, 0), task 'a' wants 2 robots, 1 can share"
+    )
 
 
 def test_a_corridor_out_of_range_is_refused_with_the_nearest_station():
