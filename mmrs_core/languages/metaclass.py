@@ -261,7 +261,7 @@ class Metaclass:
         return f"<metaclass {self.ns_uri}#{self.name}>"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Package:
     """A metamodel.
 

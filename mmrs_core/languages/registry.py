@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 from inspect import ismodule
 from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING
+from weakref import WeakValueDictionary
 
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.classes import ElementClass, joined, refuse_hiding
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from mmrs_core.languages.importers import Importer
 
 _ONE_AT_A_TIME = RLock()
+_ASSEMBLED: WeakValueDictionary[tuple[object, ...], Package] = WeakValueDictionary()
+"""The first of the packages that were made of sources; it knows the others, and each of their classes it."""
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
 
 
@@ -228,15 +231,20 @@ def registry_with(
             metaclass, or one hides a feature of a metaclass below its own.
         UnreadableError: if a file is not a metamodel.
     """
-    given = tuple(sources)
-    packages = _assembled(given, tuple(_stamp(source.ecore) for source in given))
-    return Registry((*core_registry().packages, *packages), migrations, classes, importers)
+    packages = (*core_registry().packages, *_assembled(tuple(sources)))
+    return Registry(packages, migrations, classes, importers)
 
 
-@lru_cache(8)
-def _assembled(sources: tuple[MetamodelSource, ...], stamps: tuple[object, ...]) -> tuple[Package, ...]:
-    """Return packages, the same ones while their sources stay: their classes are to be subclassed."""
-    return _assemble(sources, core_registry().packages)
+def _assembled(sources: tuple[MetamodelSource, ...]) -> tuple[Package, ...]:
+    """Return packages, the same ones while anything uses one of them: their classes are to be subclassed."""
+    given = (sources, tuple(_stamp(source.ecore) for source in sources))
+    with _ONE_AT_A_TIME:
+        if first := _ASSEMBLED.get(given):
+            return tuple(each for each in first.known.values() if each.known is first.known)
+        made = _assemble(sources, core_registry().packages)
+        if made:
+            _ASSEMBLED[given] = made[0]
+        return made
 
 
 def _stamp(ecore: Path | object) -> object:

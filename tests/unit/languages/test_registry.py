@@ -1,5 +1,7 @@
+import gc
 import re
 from pathlib import Path
+from weakref import ref
 
 import pytest
 
@@ -74,6 +76,17 @@ def test_sources_may_come_in_any_order_and_refer_in_circles(package):
     for sources in ([one, two], [two, one]):
         registry = registry_with(sources)
         assert registry.metaclass("urn:t:one", "A").is_kind("urn:t:one", "C")
+
+
+def test_classes_that_nothing_uses_any_more_are_let_go(package):
+    source = package("one", eclass("A"))
+    one = ref(registry_with([source]).metaclass("urn:t:one", "A").interface)
+    kept = one()
+    gc.collect()
+    assert registry_with([source]).metaclass("urn:t:one", "A").interface is kept
+    del kept
+    gc.collect()
+    assert one() is None
 
 
 def test_supertypes_in_an_order_that_python_refuses(package):

@@ -1,5 +1,6 @@
 import os
 import stat
+from dataclasses import replace
 
 import pytest
 
@@ -62,14 +63,9 @@ def test_the_schema_location_says_where_the_used_metamodels_lie(everything):
 
 
 def test_two_packages_of_one_prefix_are_told_apart(core):
-    from mmrs_core.languages.metaclass import Package
     from mmrs_core.languages.registry import Registry
 
-    def with_prefix(package):
-        fields = {name: getattr(package, name) for name in Package.__slots__}
-        return Package(**fields | {"prefix": "same"})
-
-    registry = Registry(with_prefix(package) for package in core.everything)
+    registry = Registry(replace(package, prefix="same") for package in core.everything)
     roots = [mission.Fork(name="f"), behaviour.Start(name="s")]
     text = to_xmi(roots, registry)
     assert b"<same:Fork" in text

@@ -32,7 +32,7 @@ from mmrs_core.languages.classes import ElementClass
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.importers import Imported, Importer, Recognition
 from mmrs_core.languages.reading import read_text
-from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.languages.registry import MetamodelSource, registry_with
 from mmrs_core.plugins import language, load_plugins
 from mmrs_core.testing.scenes import FLYER, sample_type
 from mmrs_runtime.records.steps import StepRecord
@@ -333,6 +333,18 @@ def test_the_classes_that_a_plug_in_subclasses_are_those_of_the_languages_that_i
     for extra in ({"kites": plugin}, others):
         made = load_plugins(extra=extra).contributions.languages.create("urn:mmrs:multicopter:1.0", "Drone")
         assert (made.length, isinstance(made, drone), isinstance(made, tethered)) == (30.0, True, True)
+
+
+def test_the_classes_of_a_language_stay_those_of_the_plug_ins_however_many_other_languages_come_and_go(
+    tmp_path,
+):
+    drone = language("urn:mmrs:multicopter:1.0").member("Drone")
+    for number in range(9):
+        file = tmp_path / f"{number}.ecore"
+        file.write_text(ZOO.read_text())
+        registry_with([MetamodelSource("urn:test:zoo", file)])
+    installed = load_plugins().contributions.languages
+    assert isinstance(installed.create("urn:mmrs:multicopter:1.0", "Drone"), drone)
 
 
 def test_two_migrations_from_one_version_name_both_plug_ins():
