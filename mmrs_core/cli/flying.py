@@ -96,7 +96,7 @@ def carry_out(session: Session, loaded: Loaded, wanted: RunOptions) -> Result:
     program = loaded.program
     backend = backend_for(program, session.contributions, wanted.backend, wanted.own_backends)
     here = robots_of(program, wanted.robots)
-    links = links_of(wanted.links, here)
+    links = links_of(wanted.links, here, robots_of(program, ()))
     check_backends(wanted, links, here, session.contributions.vehicles)
     resumed = resumed_steps(program, wanted, here)
     run = resumed[0].run if resumed else wanted.run

@@ -119,26 +119,26 @@ def _by(backend: str, wanted: RunOptions, robots: tuple[str, ...]) -> tuple[str,
     return tuple(each for each in robots if wanted.own_backends.get(each, wanted.backend) == backend)
 
 
-def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
-    """Return the links of these robots as far as they were given.
+def links_of(given: tuple[str, ...], robots: tuple[str, ...], known: tuple[str, ...]) -> dict[str, str]:
+    """Return the links of these robots as far as they were given; so may be those of all others known.
 
     Raises:
         typer.BadParameter: if it is not clear whose one of them is, or one robot has two.
     """
     links: dict[str, str] = {}
     for text in given:
-        named = max((each for each in robots if text.startswith(f"{each}=")), key=len, default="")
+        named = max((each for each in known if text.startswith(f"{each}=")), key=len, default="")
         robot, separator, url = (named, "=", text[len(named) + 1 :]) if named else text.partition("=")
         if not separator and len(robots) > 1:
             raise typer.BadParameter(
                 f"--connect {text}: several robots; name one: --connect {robots[0]}={text}"
             )
-        if separator and robot not in robots:
+        if separator and robot not in known:
             raise typer.BadParameter(
-                f"--connect {text}: unknown robot '{robot}'; the robots are {', '.join(robots)}"
+                f"--connect {text}: unknown robot '{robot}'; the robots are {', '.join(known)}"
             )
         name, reached = (robot, url) if separator else (robots[0], text)
         if name in links:
             raise typer.BadParameter(f"--connect {text}: '{name}' already has the connection {links[name]}")
         links[name] = reached
-    return links
+    return {robot: links[robot] for robot in robots if robot in links}

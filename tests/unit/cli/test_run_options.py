@@ -13,6 +13,7 @@ from mmrs_mavlink.plugin.backend import MAVLINK
 
 BACKENDS = {"mavlink": MAVLINK, "simulation": SIMULATION}
 LOGS = Path("logs")
+BOTH = ("alpha", "beta")
 LINK = "udpin:127.0.0.1:14550"
 
 
@@ -50,15 +51,20 @@ def test_two_robots_may_share_a_link():
 
 def test_one_robot_has_one_link():
     with pytest.raises(typer.BadParameter, match=r"'alpha' already has the connection udpin:"):
-        links_of((f"alpha={LINK}", "alpha=udpin:127.0.0.1:14560"), ("alpha", "beta"))
+        links_of((f"alpha={LINK}", "alpha=udpin:127.0.0.1:14560"), BOTH, BOTH)
 
 
 def test_names_of_robots_may_hold_what_stands_between_them_and_their_links():
     given = (f"a=b={LINK}", f"a={LINK}@2")
-    assert links_of(given, ("a", "a=b")) == {"a=b": LINK, "a": f"{LINK}@2"}
+    both = ("a", "a=b")
+    assert links_of(given, both, both) == {"a=b": LINK, "a": f"{LINK}@2"}
 
 
-BOTH = ("alpha", "beta")
+def test_the_links_of_the_whole_team_serve_whoever_runs_one_of_its_robots():
+    team = (f"alpha={LINK}@1", f"beta={LINK}@2")
+    assert links_of(team, ("beta",), BOTH) == {"beta": f"{LINK}@2"}
+    with pytest.raises(typer.BadParameter, match=r"unknown robot 'gamma'; the robots are alpha, beta"):
+        links_of((*team, f"gamma={LINK}"), ("beta",), BOTH)
 
 
 def test_a_robot_may_have_a_backend_of_its_own():
