@@ -25,6 +25,7 @@ class Need:
         values: that suit; empty: all but `off`.
         off: value that stands for none.
         further: what else is needed, by the value that suits.
+        older: what counts instead where a vehicle reports it: firmware before these parameters.
     """
 
     names: tuple[str, ...]
@@ -32,15 +33,19 @@ class Need:
     values: tuple[int, ...] = ()
     off: int = 0
     further: Mapping[int, Need] = field(default_factory=dict)
+    older: Need | None = None
 
     @property
     def all_names(self) -> tuple[str, ...]:
         """Return the names of all parameters that count, each once."""
-        further = (name for each in self.further.values() for name in each.all_names)
+        others = (*self.further.values(), *filter(None, (self.older,)))
+        further = (name for each in others for name in each.all_names)
         return tuple(dict.fromkeys([*self.names, *further]))
 
     def judge(self, values: Mapping[str, float]) -> Judgement:
         """Return whether the values of parameters suit; those that are missing are unknown."""
+        if self.older is not None and any(name in values for name in self.older.names):
+            return self.older.judge(values)
         reported = {name: round(values[name]) for name in self.names if name in values}
         met = {name: value for name, value in reported.items() if self._suits(value)}
         unreported = [name for name in self.names if name not in reported]
@@ -184,6 +189,12 @@ def _refused_by_px4(what: str) -> Callable[[Params], Need]:
     return lambda params: Need((), f"PX4 carries out no {what}")
 
 
+def _px4_gripper(params: Params) -> Need:
+    lacking = "the vehicle has no gripper"
+    enabled = Need(("PD_GRIPPER_EN",), lacking, (1,))  # up to PX4 1.16, where each has a type
+    return Need(("PD_GRIPPER_TYPE",), lacking, off=-1, older=enabled)
+
+
 def _px4_trigger(params: Params) -> Need:
     return Need(("TRIG_MODE",), "no camera is triggered (1 is on command, 4 by distance, on command)")
 
@@ -194,10 +205,11 @@ ON_PX4: Needs = {
     SET_SERVO: _refused_by_px4("DO_SET_SERVO"),
     REPEAT_SERVO: _refused_by_px4("DO_REPEAT_SERVO"),
     IMAGE_START_CAPTURE: _refused_by_px4("IMAGE_START_CAPTURE; mavlink.camera.command = digicam triggers it"),
-    GRIPPER: lambda params: Need(("PD_GRIPPER_EN",), "the vehicle has no gripper", (1,)),
+    GRIPPER: _px4_gripper,
     DIGICAM_CONTROL: _px4_trigger,
     TRIGGER_DISTANCE: _px4_trigger,
 }
 """Read in PX4 1.16 (``Commander.cpp``, ``camera_trigger.cpp``, ``payload_deliverer.cpp``), and tried on its
 simulation: it answers UNSUPPORTED to what it does not carry out, and nothing without a trigger or gripper.
+PD_GRIPPER_TYPE alone as in PX4 1.17 (``module.yaml`` of ``payload_deliverer``), which was not flown.
 """

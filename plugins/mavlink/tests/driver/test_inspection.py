@@ -100,6 +100,27 @@ def test_a_device_whose_parameters_leave_its_command_without_effect_is_a_defect(
     assert words in found.defects[0]
 
 
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        (
+            {"PD_GRIPPER_EN": 0.0, "PD_GRIPPER_TYPE": 0.0},
+            "PD_GRIPPER_EN is 0, and must be 1: the vehicle has",
+        ),
+        ({"PD_GRIPPER_TYPE": -1.0}, "PD_GRIPPER_TYPE is -1: the vehicle has no gripper"),
+        ({"PD_GRIPPER_EN": 1.0, "PD_GRIPPER_TYPE": 0.0}, "PD_GRIPPER_EN = 1"),
+        ({"PD_GRIPPER_TYPE": 0.0}, f"PD_GRIPPER_TYPE = 0; {UNTRIED}"),
+        ({}, "unknown: the vehicle does not report PD_GRIPPER_TYPE"),
+    ],
+)
+def test_a_gripper_of_px4_is_enabled_up_to_1_16_and_has_a_type_from_1_17_on(parameters, words):
+    claw = Operate("claw", "Grab", 211, (1.0, 1.0))
+    found = inspected(using(claw), Equipped(**parameters), autopilot=PX4)
+    (said,) = found.defects or found.lines
+    assert said.startswith(f"device 'claw' (Grab): {words}")
+    assert bool(found.defects) == (" is " in words)
+
+
 def test_an_output_that_is_free_for_commands_is_none():
     arm = Operate("arm", "Lower", 183, (9.0, 1900.0))
     found = inspected(using(arm), Equipped(SERVO9_FUNCTION=0.0))
