@@ -10,6 +10,7 @@ from mmrs_runtime.engine.connecting import Live
 from mmrs_runtime.records.blackbox import BlackBox
 
 from .links.link import Link
+from .links.own_clock import OwnClock
 from .links.radios import Radios
 from .program import Geographic, Robot
 from .records.recording import Recording
@@ -63,6 +64,7 @@ def reached(
         home_tolerance=inf if live.resumed else home_tolerance,
         tell=live.say,
     )
+    link.observe(OwnClock(link, clock, live.say, box))
     if box is not None:
         link.observe(Recording(box, clock, vehicle.state, geographic=isinstance(robot.home, Geographic)))
     path = live.box_path(robot.id)

@@ -313,9 +313,17 @@ def _of_box_command(found: Gathered, entry: Entry) -> None:
         found.take_offs.append(entry.time)
 
 
+def _of_clock(found: Gathered, entry: Entry) -> None:
+    rate = number_of(entry.content.get("rate"))
+    if rate is not None:
+        why = f"its times are the run's, and the vehicle's clock ran {rate:.2g} times as fast"
+        raise UnreadableError(f"{found.file}: {why}: fly it again with the --speedup of its simulation")
+
+
 _BOX: Mapping[str, Callable[[Gathered, Entry], None]] = {
     "start": _of_start,
     "fix": _of_fix,
     "message": _of_message,
     "command": _of_box_command,
+    "clock": _of_clock,
 }

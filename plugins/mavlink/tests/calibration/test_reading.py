@@ -60,10 +60,11 @@ def test_the_firmware_names_the_profile(firmware, profile, log):
     assert (found.name if found else None) == profile
 
 
-def test_a_black_box_holds_the_flight(log):
+def black_box(*more) -> bytes:
+    """Return a black box of the flight that holds further entries."""
     head = {"run": "r", "robot": "Alba"}
     start = head | {"time": 0.0, "kind": "start", "vehicle": "copter", "firmware": "ARDUPILOTMEGA"}
-    lines = [start]
+    lines = [start, *(head | each for each in more)]
     for each in SAMPLES[::2]:
         east, north, up = each.place
         place = {"latitude": 42.37 + north / 111_081.0, "longitude": 13.35 + east / 82_379.0, "height": up}
@@ -73,11 +74,22 @@ def test_a_black_box_holds_the_flight(log):
             | {"time": each.time, "kind": "fix", "place": place, "speed": speed, "heading": each.heading}
             | {"energy": 0.9, "mode": "guided", "armed": True}
         )
-    text = "\n".join(map(json.dumps, lines)) + "\n"
-    flight = flight_in(log(text.encode(), "Alba.blackbox.ndjson"))
+    return "\n".join([*map(json.dumps, lines), ""]).encode()
+
+
+def test_a_black_box_holds_the_flight(log):
+    flight = flight_in(log(black_box(), "Alba.blackbox.ndjson"))
     assert len(flight.times) == len(SAMPLES[::2])
     assert flight.velocities[:, 0].max() == pytest.approx(8.0, rel=0.02)
     assert [number for _, number in flight.modes] == [4]
+
+
+def test_a_black_box_whose_vehicle_had_another_clock_than_the_run_is_refused(log):
+    box = log(black_box({"time": 11.0, "kind": "clock", "rate": 4.98}), "Alba.blackbox.ndjson")
+    with pytest.raises(
+        UnreadableError, match=f"^{re.escape(str(box))}: its times are .* ran 5 times as fast"
+    ):
+        flight_in(box)
 
 
 @pytest.mark.parametrize(
