@@ -37,9 +37,10 @@ def pytest_configure(config: pytest.Config) -> None:
     same_examples.pytest_configure()
     take_examples_by_profile(config)
     if not selects_thorough(config):
-        from plans_once import remember_capabilities, remember_plans
+        from plans_once import remember_capabilities, remember_plans, remember_plugins
 
         remember_plans()
+        remember_plugins()
         remember_capabilities()
     if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
         config.pluginmanager.register(Courtesy())

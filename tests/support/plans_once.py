@@ -1,8 +1,12 @@
-"""Plans and tables of capabilities of a test run: what one process has found is not sought by the others."""
+"""Plans, plug-ins and tables of capabilities of a test run: what was found once is not sought again."""
 
 import os
 import pickle
+import sys
+from collections.abc import Mapping
+from functools import cache
 from hashlib import sha256
+from importlib.metadata import entry_points
 from io import BytesIO
 from pathlib import Path
 from time import process_time
@@ -10,7 +14,7 @@ from typing import Any
 
 import shared
 
-from mmrs_core import pipeline
+from mmrs_core import pipeline, plugins
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import Target
 from mmrs_core.diagnostics import Place
@@ -18,6 +22,7 @@ from mmrs_core.generation.capabilities import judging
 from mmrs_core.generation.capabilities.judging import TargetCapability, capabilities_of
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
+from mmrs_core.plugins import Plugins, load_plugins
 from mmrs_core.scene import Plan, Scene
 
 _LONG = 0.2
@@ -34,6 +39,22 @@ def remember_plans() -> None:
 def remember_capabilities() -> None:
     """Have modules that are imported from now on find what installed targets do with each element."""
     judging.capabilities_of = _remembered_table
+
+
+def remember_plugins() -> None:
+    """Have commands find the installed plug-ins loaded, while nothing else is installed or given."""
+    plugins.load_plugins = _remembered_plugins
+
+
+def _remembered_plugins(extra: Mapping[str, object] | None = None, **options: bool) -> Plugins:
+    if extra or plugins.entry_points is not entry_points:
+        return load_plugins(extra=extra, **options)
+    return _loaded(tuple(sys.path), **options)
+
+
+@cache
+def _loaded(_: tuple[str, ...], **options: bool) -> Plugins:
+    return load_plugins(**options)
 
 
 def _remembered_table(target: Target, contributions: Contributions) -> tuple[TargetCapability, ...]:

@@ -290,9 +290,10 @@ def run(arguments: list[str]) -> None:
 
 if __name__ == "__main__":
     if (shared.folder() / "plans").is_dir():
-        from plans_once import remember_plans
+        from plans_once import remember_plans, remember_plugins
 
         remember_plans()
+        remember_plugins()
     sys.path.remove(str(Path(__file__).parent))
     import_everything()
     gc.freeze()
