@@ -94,6 +94,8 @@ OF_MISSIONS: Mapping[str, str] = {
     "DeviceAction": "an item, then NAV_LOITER_TIME for its duration, ArduPilot: rounded up to seconds",
     "DeviceAction: a camera that tells each image": "an item; the camera's reports are not awaited",
     "DeviceAction.parameters": "go before the device's properties",
+    "Feedback": "is not sent, and nothing waits for it; ground stations show the item that a vehicle is at",
+    "Feedback.payload": "is not sent",
     "Move.preActions": "items before those of the movement",
     "Move.postActions": "items after those of the movement",
 }

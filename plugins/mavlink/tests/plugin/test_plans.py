@@ -10,7 +10,7 @@ from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.scene import Device, Frame, Policy
-from mmrs_core.testing.programs import L_AQUILA, move, photo, program
+from mmrs_core.testing.programs import L_AQUILA, feedback, move, photo, program
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.times import sortie_seconds, too_long
 
@@ -248,7 +248,6 @@ def test_everything_that_a_plan_cannot_say_is_listed():
     assert [refusal.split(": ", 1)[0] for refusal in refusals] == [
         "robot 'alpha', move 'a4'",
         "robot 'beta', move 'b1'",
-        "robot 'beta', move 'b2'",
     ]
 
 
@@ -373,3 +372,13 @@ def test_a_file_is_noted_with_the_seconds_of_its_mission():
     robot, given = flight(go_to("far", (0.0, 400.0, 25.0)))
     (seconds,) = sortie_seconds(robot, given)
     assert [each.note for each in QGC_PLAN.files(given)] == [f"{seconds:.0f} s as a mission, waits aside"]
+
+
+def test_feedback_is_left_out_of_a_plan_and_its_file_is_noted_for_that():
+    """Nothing waits for it, and a ground station shows by itself how far a vehicle is."""
+    moves = (take_off("up", 20.0), go_to("a", (0.0, 30.0, 25.0)), LAND)
+    told = (moves[0], replace(moves[1], after=(feedback("done", ("task", "field")),)), LAND)
+    assert items(plans(*told)["alpha.plan"]) == items(plans(*moves)["alpha.plan"])
+    _, given = flight(*told[1:-1])
+    (file,) = QGC_PLAN.files(given)
+    assert file.note.endswith(" s as a mission, waits aside; sends no feedback")

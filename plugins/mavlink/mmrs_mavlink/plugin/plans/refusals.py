@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from mmrs_core.behaviour.earth import LOCAL, at_a_pole, sea_level_of
-from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram
+from mmrs_core.behaviour.program import DEVICE_ACTION, FEEDBACK, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import homeless
 from mmrs_core.generation.plan_refusals import policy_words
@@ -114,6 +114,8 @@ def _refused(policy: Policy) -> str:
 
 
 def _of_action(action: Action, move: Move, context: VehicleContext) -> Iterator[str]:
+    if action.metaclasses[0] == FEEDBACK:
+        return  # nothing waits for it; the note of its file says that it is not sent
     if not action.is_a(DEVICE_ACTION):
         yield f"{context.label(move)}: action {action.metaclasses[0][1]} has no form in a plan"
         return

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
-from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.program import FEEDBACK, RobotProgram
 from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
@@ -61,8 +61,11 @@ class PlannedMission:
 
     @property
     def note(self) -> str:
-        """Return how long it takes, in words; empty where that is unknown."""
-        return "" if self.seconds is None else f"{self.seconds:.0f} s as a mission, waits aside"
+        """Return how long it takes, where that is known, and whether feedback is left out, in words."""
+        actions = (each for move in self.context.robot.moves for each in (*move.before, *move.after))
+        silent = any(each.metaclasses[0] == FEEDBACK for each in actions)
+        lasts = "" if self.seconds is None else f"{self.seconds:.0f} s as a mission, waits aside"
+        return "; ".join(filter(None, (lasts, "sends no feedback" if silent else "")))
 
 
 def missions_of(input: TargetInput) -> Iterator[PlannedMission]:
