@@ -12,11 +12,13 @@ from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.walk import successors
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.scene.headings import bearing, turn_at
+from mmrs_core.scene.passing import passed
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram, Transition
     from mmrs_core.scene import Kinematics, Name, Position
-    from mmrs_core.scene.timing import Passage, Push
+    from mmrs_core.scene.passing import Passage
+    from mmrs_core.scene.timing import Push
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 SHORTEST = 3
@@ -138,7 +140,7 @@ class Passages:
             return None
         entered = before if len(path) == 2 else None
         onward = self.kinematics(following).rates(following.speed)
-        return rates.passage((path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward, push)
+        return passed(rates, (path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward, push)
 
 
 def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:

@@ -13,7 +13,8 @@ from mmrs_core.contributions.rules import most_specific, robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Position, RobotType
-from mmrs_core.scene.timing import STANDING, MoveSeconds, Passage, Push
+from mmrs_core.scene.passing import Passage
+from mmrs_core.scene.timing import STANDING, MoveSeconds, Push
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,39 +2,22 @@
 
 Autopilots take a straight leg from a stop to a stop: they speed up, keep their speed, and slow down, with a
 limited acceleration that itself changes no faster than the jerk (`mmrs_runtime.s_curves`). What is left until
-they report it as done is settling. Where they pass a corner, they begin the next leg while they still brake
-on the last one, as far as the corner's radius allows, or slow down for it.
+they report it as done is settling. What they save where they pass a corner is in `passing`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import asin, atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt, tan
+from math import atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
-from mmrs_runtime.s_curves import (
-    Curve,
-    covering,
-    curve,
-    largest_speed,
-    reached,
-    speeding,
-    stop_to_stop,
-    turning,
-)
-from mmrs_runtime.timing import IDEAL, LegTiming, half_turn, split
+from mmrs_runtime.s_curves import largest_speed, reached, speeding, stop_to_stop
+from mmrs_runtime.timing import IDEAL, LegTiming, split
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
-
-STRAIGHT = 0.005
-"""Half the sine of turns, about half a degree, up to which a corner is none."""
-
-NEARLY_BACK = radians(89.0)
-"""Half of a turn up to which a robot comes nearer to its next place by that."""
 
 SPEEDING = 0.97
 """Share of the seconds at even speed that a leg takes at least whose ends are passed."""
@@ -55,32 +38,12 @@ ARC = 0.5
 Leg: TypeAlias = tuple[Position, Position]
 """Where a straight leg begins and ends."""
 
-_Way: TypeAlias = tuple[Sequence[float], Sequence[float]]
-"""The same, in space or in the plane."""
-
-
 Push: TypeAlias = tuple[float, float]
 """East and north: the thrust against its drag that a robot has built up, as the speed that this holds, metres
 per second. It is left when the robot stops: a leg in that direction lags less, and one back lags more."""
 
 STANDING: Push = (0.0, 0.0)
 """The push of a robot that has not moved yet."""
-
-
-class Passage(NamedTuple):
-    """The end of a leg that is passed.
-
-    Attributes:
-        saved: seconds by which this leg is shorter: the robot begins the next one, and does not settle.
-        onward: seconds by which the next one is: the robot has begun it, and does not set out from a stop.
-        speed: metres per second with which it begins the next one.
-        start: where it does, if not at the end of this one.
-    """
-
-    saved: float
-    onward: float
-    speed: float = 0.0
-    start: Position | None = None
 
 
 class MoveSeconds(NamedTuple):
@@ -276,80 +239,6 @@ class Rates:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""
         return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
 
-    def passage(
-        self,
-        before: Leg,
-        after: Leg,
-        entered: Passage | None = None,
-        onward: Rates | None = None,
-        push: Push | None = None,
-    ) -> Passage:
-        """Return what a robot saves that passes where one leg ends and another begins.
-
-        Args:
-            before, after: the legs.
-            entered: with which it begins the one before; None: from a stop.
-            onward: rates of the one after; None: these.
-            push: with which it begins the one before; None: not known.
-        """
-        if self.timing.slows_down:
-            return self._slowed(before, after, entered or Passage(0.0, 0.0), onward or self, push)
-        settling, both = self.settling(*before), self.overlap(before, after) / 2.0
-        starting = min(self.timing.starting, settling)
-        return Passage(settling - starting + both, both + starting)
-
-    def _slowed(self, before: Leg, after: Leg, entered: Passage, onward: Rates, push: Push | None) -> Passage:
-        """Return what a robot saves that slows down for a place, as long as it need not stop for it.
-
-        Within its radius it turns to the next leg, for a while, on an arc.
-        """
-        (here, there), (_, beyond) = before, after
-        aside = _half_turn((here[:2], there[:2]), (there[:2], beyond[:2]))
-        if aside is None:
-            return Passage(0.0, 0.0)
-        speed = self.timing.passing(aside, dist(there[:2], beyond[:2]), beyond[2] - there[2])
-        radius = self.timing.corner_radius if speed > 0.0 else 0.0
-        begun = entered.start or here
-        near = _moved(there, (begun, there), -min(radius, dist(begun, there)))
-        first = self._curve((begun, near), entered.speed, speed)
-        if dist(begun, there) <= radius:  # it has passed it as soon as the one before
-            aside = 0.0
-        seconds = turning(first.leaves, aside, self.timing.acceleration, self.timing.jerk)
-        half = min(asin(min(1.0, aside)), NEARLY_BACK)
-        way = seconds * first.leaves / 2.0 * (tan(half) / half if half > 0.0 else 1.0)
-        start = _moved(_moved(near, before, way), after, way)
-        rest = onward._curve((start, beyond), first.leaves).seconds + seconds
-        saved = self._curve((begun, there), entered.speed).seconds - first.seconds + self.settling(*before)
-        saved += self._lag(self._stopping(*before)[0], *before, push) - self._lag(
-            first.seconds, *before, push
-        )
-        return Passage(
-            self.share * saved,
-            self.share * (onward._curve(after).seconds - rest),
-            first.leaves,
-            start if radius else None,
-        )
-
-    def _curve(self, leg: Leg, enters: float = 0.0, leaves: float = 0.0) -> Curve:
-        length, speed, up, down = self._limits(*leg)
-        return curve(length, speed, (up, down, self.timing.jerk), enters, min(leaves, speed))
-
-    def overlap(self, before: Leg, after: Leg) -> float:
-        """Return how many seconds a robot saves that passes the corner between two legs.
-
-        That is for as long as it is on both at once: while it brakes on the first and speeds up on the
-        second, but it comes no further from the corner than its radius, and half of the turn is over when it
-        is as far before as behind it.
-        """
-        both = min(self._phases(*before)[1], self._phases(*after)[0])
-        return self.share * min(both, self._turning(before, after))
-
-    def settling(self, start: Position, end: Position) -> float:
-        """Return the seconds that a leg takes longer as it ends with a stop, which is not passed."""
-        seconds, fastest = self._stopping(start, end)
-        lag = 0.0 if self.timing.slows_down else self._lag(seconds, start, end)
-        return self.share * max(0.0, lag + self.timing.settled(fastest, seconds))
-
     def eased(self, start: Position, end: Position, entering: float = 0.0) -> float:
         """Return the fewest seconds of a leg whose ends may be passed.
 
@@ -371,18 +260,18 @@ class Rates:
         saved = more * speeding(more, self.timing.braking, self.timing.jerk) / (2.0 * self.cruise)
         eased = SPEEDING * self.even(start, end)
         if not self.timing.slows_down:
-            seconds, _ = self._stopping(start, end)
-            eased = max(eased, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
+            seconds, _ = self.stopping(start, end)
+            eased = max(eased, self.share * (seconds - sum(self.phases(start, end)) / 2.0))
         return min(stopping, max(0.0, eased - saved))
 
     def _behind_start(self, start: Position, end: Position) -> Position:
         """Return where a leg may begin of a robot that counts the last one as over within a radius."""
-        return _moved(start, (start, end), -self.timing.corner_radius)
+        return moved(start, (start, end), -self.timing.corner_radius)
 
     def _early(self, start: Position, end: Position) -> Position:
         """Return where a leg may end that counts as over while the robot moves."""
         early = 0.0 if self.timing.still > 0.0 else min(self.timing.acceptance, dist(start, end))
-        return _moved(end, (start, end), -early)
+        return moved(end, (start, end), -early)
 
     def _between_inexact_ends(self, start: Position, end: Position) -> float:
         """Return the fewest or most seconds of a leg: one counts as over before the robot stands at its end.
@@ -391,14 +280,14 @@ class Rates:
         curve, or make up for what is left of the leg before, and come to a stop. One that is so slow all the
         way has ended its leg as soon as it is near enough.
         """
-        length, speed, up, down = self._limits(start, end)
+        length, speed, up, down = self.limits(start, end)
         timing = self.timing
         if length <= 0.0 or speed <= 0.0:
-            return self._stopping(start, end)[0]
+            return self.stopping(start, end)[0]
         if self.bound > 0:
             seconds, fastest = stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
             settled = self.timing.settled(fastest, seconds)
-            return seconds + self._lag(seconds, start, end) + max(0.0, settled)
+            return seconds + self.lag(seconds, start, end) + max(0.0, settled)
         still = min(timing.still, speed)
         if speed <= timing.still:
             length -= min(length, timing.acceptance)
@@ -418,13 +307,13 @@ class Rates:
             fastest = (sqrt(bending * bending + 8.0 * slowness * length) - bending) / (2.0 * slowness)
             if fastest >= self._bent:
                 return slowness * fastest + bending + self.timing.settled(fastest)
-        seconds, fastest = self._stopping(start, end)
+        seconds, fastest = self.stopping(start, end)
         if seconds <= 0.0:
             return seconds
-        lag = self._lag(seconds, start, end, push)
+        lag = self.lag(seconds, start, end, push)
         return max(0.0, seconds + lag + self.timing.settled(fastest, seconds))
 
-    def _lag(self, seconds: float, start: Position, end: Position, push: Push | None = None) -> float:
+    def lag(self, seconds: float, start: Position, end: Position, push: Push | None = None) -> float:
         """Return how much longer a leg takes that would take so long, seconds."""
         if not self.timing.lag or start[:2] == end[:2]:
             return 0.0
@@ -435,7 +324,7 @@ class Rates:
     def _held(self, start: Position, end: Position) -> float:
         """Return the largest level speed on a leg; the mean one where places may be passed."""
         level, length = dist(start[:2], end[:2]), dist(start, end)
-        seconds, fastest = self._stopping(start, end)
+        seconds, fastest = self.stopping(start, end)
         speed = length / seconds if self.timing.slows_down else fastest
         return speed * level / length
 
@@ -449,41 +338,28 @@ class Rates:
         east, north = end[0] - start[0], end[1] - start[1]
         if not self.timing.lag or hypot(east, north) <= LEVEL:
             return before if self.timing.lag else None
-        seconds = self._stopping(start, end)[0]
+        seconds = self.stopping(start, end)[0]
         return self.timing.pushed(before or STANDING, (east, north), self._held(start, end), seconds)
 
-    def _stopping(self, start: Position, end: Position) -> tuple[float, float]:
+    def stopping(self, start: Position, end: Position) -> tuple[float, float]:
         """Return the seconds of a leg from a stop to a stop, and its largest speed."""
-        length, speed, up, down = self._limits(start, end)
+        length, speed, up, down = self.limits(start, end)
         if length <= 0.0:
             return (0.0, 0.0)
         if speed <= 0.0:
             return (inf, 0.0)
         return stop_to_stop(length, speed, up, down, self.timing.jerk)
 
-    def _phases(self, start: Position, end: Position) -> tuple[float, float]:
+    def phases(self, start: Position, end: Position) -> tuple[float, float]:
         """Return for how many seconds a leg from a stop to a stop speeds up, and slows down."""
-        length, speed, up, down = self._limits(start, end)
+        length, speed, up, down = self.limits(start, end)
         if length <= 0.0 or speed <= 0.0:
             return (0.0, 0.0)
         jerk = self.timing.jerk
         fastest = min(speed, largest_speed(length, up, down, jerk))
         return (speeding(fastest, up, jerk), speeding(fastest, down, jerk))
 
-    def _turning(self, before: Leg, after: Leg) -> float:
-        """Return the seconds of a turn that comes as far from its corner as the radius at most.
-
-        Half of it takes as long as the robot needs for its distance from the corner then, from a stop.
-        """
-        half = _half_turn(before, after)
-        if half is None:
-            return 0.0
-        if half <= STRAIGHT or self.timing.corner_radius == inf:
-            return inf
-        apart = self.timing.corner_radius / (2.0 * half)
-        return 2.0 * covering(apart, self.timing.acceleration, self.timing.jerk)
-
-    def _limits(self, start: Position, end: Position) -> tuple[float, float, float, float]:
+    def limits(self, start: Position, end: Position) -> tuple[float, float, float, float]:
         """Return the length of a leg, and its largest speed, acceleration and deceleration along it."""
         up, down, upright = self.timing.acceleration, self.timing.braking, self.timing.vertical_acceleration
         rise, level = end[2] - start[2], hypot(end[0] - start[0], end[1] - start[1])
@@ -496,18 +372,12 @@ class Rates:
         return length, length / even if even > 0.0 else inf, up, down
 
 
-def _moved(place: Position, leg: Leg, metres: float) -> Position:
+def moved(place: Position, leg: Leg, metres: float) -> Position:
     """Return where a place is moved to in the direction of a leg."""
     start, end = leg
     part = metres / length if (length := dist(start, end)) > 0.0 else 0.0
     east, north, up = (at + part * (q - p) for at, p, q in zip(place, start, end, strict=True))
     return (east, north, up)
-
-
-def _half_turn(before: _Way, after: _Way) -> float | None:
-    """Return the sine of half the turn between two legs; None where one has no length."""
-    one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
-    return half_turn(one, two)
 
 
 def _split(start: Position, end: Position, push: Push) -> tuple[float, float]:

@@ -27,7 +27,8 @@ from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import DISTANCE, Position
 from mmrs_core.scene.headings import bearing
-from mmrs_core.scene.timing import STANDING, Passage, Push
+from mmrs_core.scene.passing import Passage
+from mmrs_core.scene.timing import STANDING, Push
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of, move_kinds_of

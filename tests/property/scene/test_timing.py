@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from mmrs_core.scene import Kinematics
 from mmrs_core.scene.headings import bearing
-from mmrs_core.scene.timing import Passage, Rates
+from mmrs_core.scene.passing import Passage, overlap, passed
+from mmrs_core.scene.timing import Rates
 from mmrs_runtime.s_curves import curve
 from mmrs_runtime.timing import IDEAL, LegTiming
 
@@ -126,7 +127,7 @@ def test_passing_a_corner_takes_no_more_time_than_stopping_there(timing, first, 
     end = (corner[0] + second * sin(radians(90.0 - turn)), corner[1] + second * sin(radians(turn)), corner[2])
     found = rates(timing, speed)
     stopping = found.from_stop_to_stop(HERE, corner) + found.from_stop_to_stop(corner, end)
-    passage = found.passage((HERE, corner), (corner, end))
+    passage = passed(found, (HERE, corner), (corner, end))
     saved = passage.saved + passage.onward
     assert 0.0 <= saved <= stopping + 1e-9
     assert stopping - saved >= found.eased(HERE, corner) / 2.0 - 1e-6
@@ -144,7 +145,7 @@ def test_a_robot_that_slows_down_for_places_takes_each_leg_at_speeds_that_fit(ti
         here = there
     entered = Passage(0.0, 0.0)
     for before, after in pairwise(legs):
-        passage = found.passage(before, after, entered)
+        passage = passed(found, before, after, entered)
         level = dist(entered.start or before[0], before[1])
         seconds = found.from_stop_to_stop(*before) - entered.onward - passage.saved
         assert seconds >= max(0.0, level - timing.corner_radius) / speed - 1e-6
@@ -173,8 +174,9 @@ def test_a_turn_keeps_within_the_corner_radius(timing, length, speed):
     """In half of the overlap the robot speeds up from the corner on; half of the turn is at right angles."""
     assume(timing.jerk == inf and timing.corner_radius > 0.0)
     corner = east(length)
-    overlap = rates(timing, speed).overlap((HERE, corner), (corner, (corner[0], length, corner[2])))
-    travelled = timing.acceleration * (overlap / 2.0) ** 2 / 2.0
+    after = (corner, (corner[0], length, corner[2]))
+    both = overlap(rates(timing, speed), (HERE, corner), after)
+    travelled = timing.acceleration * (both / 2.0) ** 2 / 2.0
     assert travelled * tan(radians(45.0)) * 2.0**0.5 <= timing.corner_radius + 1e-6
 
 

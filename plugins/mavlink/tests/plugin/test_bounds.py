@@ -19,7 +19,8 @@ from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
 from mmrs_core.contributions.timing import as_uploaded
 from mmrs_core.scene import Capability, Kinematics
-from mmrs_core.scene.timing import STANDING, Passage, Rates
+from mmrs_core.scene.passing import Passage, passed
+from mmrs_core.scene.timing import STANDING, Rates
 from mmrs_core.testing.programs import installed, move, program
 from mmrs_mavlink.plugin.vehicles import timings
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PROFILES, PX4_MULTICOPTER
@@ -279,7 +280,7 @@ def legs_of(rates, lengths, aside=0.0):
         here = there
     passage, push = Passage(0.0, 0.0), STANDING
     for leg, after in pairwise(route):
-        before, passage = passage, rates.passage(leg, after, passage, push=push)
+        before, passage = passage, passed(rates, leg, after, passage, push=push)
         if leg is not route[0]:
             yield leg, push, rates.from_stop_to_stop(*leg, push=push) - before.onward - passage.saved
         push = rates.push(*leg, push)
@@ -346,7 +347,7 @@ def test_a_px4_stops_for_a_place_that_is_higher_or_lower_and_does_not_settle():
     route = [(0.0, 15.0 * index, 3.0 * index) for index in range(9)]
     passage, push, found = Passage(0.0, 0.0), STANDING, []
     for leg, after in pairwise(pairwise(route)):
-        before, passage = passage, rates.passage(leg, after, passage, push=push)
+        before, passage = passage, passed(rates, leg, after, passage, push=push)
         found.append(rates.from_stop_to_stop(*leg, push=push) - before.onward - passage.saved)
         push = rates.push(*leg, push)
     assert mean(found[1:]) == pytest.approx(5.3, rel=0.1)
@@ -449,8 +450,8 @@ def test_a_px4_slows_down_on_a_leg_that_it_enters_faster_than_that_is_commanded(
     assert figures is not None
     fast, slow = (Rates(speed, figures.climb, figures.descent, figures) for speed in (9.0, 2.0))
     before, leg, after = (((0.0, 20.0 * n, 0.0), (0.0, 20.0 * n + 20.0, 0.0)) for n in range(3))
-    entering = fast.passage(before, leg, None, slow)
-    leaving = slow.passage(leg, after, entering, fast, fast.push(*before, STANDING))
+    entering = passed(fast, before, leg, None, slow)
+    leaving = passed(slow, leg, after, entering, fast, fast.push(*before, STANDING))
     assert entering.speed > 4.0
     push = fast.push(*before, STANDING)
     seconds = slow.from_stop_to_stop(*leg, push=push) - entering.onward - leaving.saved
