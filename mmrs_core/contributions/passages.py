@@ -12,7 +12,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.walk import successors
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.scene.headings import bearing, turn_at
-from mmrs_core.scene.passing import passed
+from mmrs_core.scene.passing import SHORTEST_RUN, passed
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram, Transition
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from mmrs_core.scene.timing import Push
 
 RECHARGE = (BEHAVIOUR, "Recharge")
-SHORTEST = 3
-"""Runs of fewer moves are commanded one by one: uploading them gains nothing."""
-
 STRAIGHT_DEGREES = 10.0
 """Up to where a turn is none, so that a vehicle that keeps to its legs passes it without a stop."""
 
@@ -146,7 +143,7 @@ class Passages:
 def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:
     """Return the runs of a robot as indices of moves, in the order of their first moves.
 
-    A run is a longest chain of at least three straight GoTo moves with fluid, unconditional
+    A run is a longest chain of at least `SHORTEST_RUN` straight GoTo moves with fluid, unconditional
     transitions without waits, and without actions inside. At the end of its first move the vehicle stops.
     """
     chained = {
@@ -156,7 +153,7 @@ def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[t
     }
     entered = set(chained.values())
     chains = (_chain(each, chained) for each in chained if each not in entered)
-    return tuple(sorted(each for each in chains if len(each) >= SHORTEST))
+    return tuple(sorted(each for each in chains if len(each) >= SHORTEST_RUN))
 
 
 def _chain(first: int, chained: Mapping[int, int]) -> tuple[int, ...]:

@@ -12,6 +12,7 @@ import shapely
 
 from mmrs_core.scene import Area, Corridor, Kinematics, Position, Robot
 from mmrs_core.scene.headings import turn_at
+from mmrs_core.scene.passing import SHORTEST_RUN
 
 LEAST_CUT = 2.0
 """Metres by which a corner may be cut at least: autopilots count a place as passed within a radius, and may
@@ -19,9 +20,6 @@ accelerate less than the robot's type says."""
 
 STRAIGHT = pi / 180
 """Turns smaller than this, in radians, cut no corner."""
-
-SHORTEST_RUN = 3
-"""Legs without a stop from which an autopilot may be given them as a mission."""
 
 _ON = 1e-6
 """Metres within which a corner is on a line."""

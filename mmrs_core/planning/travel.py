@@ -10,12 +10,13 @@ from math import dist, inf
 
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.planning.corners import SHORTEST_RUN, Corners, InMissions, runs_between
+from mmrs_core.planning.corners import Corners, InMissions, runs_between
 from mmrs_core.planning.corridors import CorridorPath, Corridors
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.reach import Reach, Reaches
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.scene import Area, AreaUse, Corridor, Kinematics, Point, Position, Robot, Scene
+from mmrs_core.scene.passing import SHORTEST_RUN
 from mmrs_core.scene.timing import MoveSeconds, Rates
 
 _SPECK = 0.01

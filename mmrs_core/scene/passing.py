@@ -21,6 +21,9 @@ STRAIGHT = 0.005
 NEARLY_BACK = radians(89.0)
 """Half of a turn up to which a robot comes nearer to its next place by that."""
 
+SHORTEST_RUN = 3
+"""Fewest legs without a stop that are uploaded as a mission: fewer are commanded one by one."""
+
 _Way: TypeAlias = tuple[Sequence[float], Sequence[float]]
 """Where a straight leg begins and ends, in space or in the plane."""
 
