@@ -180,6 +180,9 @@ def verify(program: Program, place: BehaviourContext, contributions: Contributio
     from mmrs_core.analysis.verdicts import verify as verified
     from mmrs_core.generation.safety import rally_points_by_policy
 
+    asked, unasked = rally_points_by_policy(
+        program, place.types, contributions.robot_kinds, place.areas or ()
+    )
     given = CheckInput(
         program=program,
         types=place.types,
@@ -190,9 +193,8 @@ def verify(program: Program, place: BehaviourContext, contributions: Contributio
         elements=place.elements,
         corridors=place.corridors,
         tasks=place.tasks,
-        rally_points=rally_points_by_policy(
-            program, place.types, contributions.robot_kinds, place.areas or ()
-        ),
+        rally_points=asked,
+        unasked_rally_points=unasked,
     )
     return verified(given, contributions.checks)
 

@@ -8,8 +8,8 @@ a detour was found. What was used of the charge by then, and what the diversion 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from heapq import heapify, heappop, heappush
 from itertools import pairwise
 from math import ceil, dist, inf
@@ -20,7 +20,7 @@ import shapely
 from mmrs_core.analysis.distance import Floats, prism_distances
 from mmrs_core.analysis.durations import Duration
 from mmrs_core.analysis.endurance import allowed_seconds, sorties_of_all
-from mmrs_core.analysis.figures import half_diagonal_of, home_of, kinematics_of, type_of
+from mmrs_core.analysis.figures import MissingFigureError, half_diagonal_of, home_of, kinematics_of, type_of
 from mmrs_core.analysis.motion import MovePath, motions
 from mmrs_core.analysis.states import GROUNDED, states_of
 from mmrs_core.analysis.times import times_of
@@ -44,27 +44,51 @@ _MOST_AROUND = 24
 
 def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if robot.id not in input.rally_points:
-        yield not_checked(NAME, robot, "no policy leads it to an emergency area")
+        unasked = not_checked(NAME, robot, "no policy leads it to an emergency area")
+        yield replace(unasked, caveat=_out_of_reach(input, robot))
         return
     if input.areas is None:
         yield not_checked(NAME, robot, "no context was given")
         return
-    allowed = allowed_seconds(input, robot)
-    if allowed == inf:
+    if allowed_seconds(input, robot) == inf:
         yield not_checked(NAME, robot, "it has no batteries and no lifetime: it is wired")
         return
-    ground = _Surroundings.of(input, robot)
-    places = {place: area for place in input.rally_points[robot.id] if (area := ground.landing(place))}
-    if not places:
+    margins = _margins(input, robot, input.rally_points[robot.id])
+    if margins is None:
         yield violated(NAME, robot, "no emergency area has room for it, but a policy leads it to one")
         return
-    sorties, found = once(input, sorties_of_all)[robot.id], _Diversions(input, robot, ground, places)
-    margins = [
-        _margin(robot, use.move, use.seconds, found, allowed)
-        for use in sorties.uses
-        if use.move in found.ends
-    ]
+    sorties = once(input, sorties_of_all)[robot.id]
     yield from judged(NAME, robot, "s", margins, (*motions(input)[robot.id].gaps, *sorties.gaps))
+
+
+def _out_of_reach(input: CheckInput, robot: RobotProgram) -> str:
+    """Return from where a robot that no policy leads to the emergency areas drawn would reach none.
+
+    It is empty where there are none, where it would reach one from everywhere, and where that is not known.
+    """
+    if robot.id not in input.unasked_rally_points:
+        return ""
+    points = input.unasked_rally_points[robot.id]
+    try:
+        margins = [] if allowed_seconds(input, robot) == inf else _margins(input, robot, points)
+    except MissingFigureError:
+        return ""
+    if margins is None:
+        return "no emergency area has room for it"
+    least = min(margins, key=lambda each: each.value, default=None)
+    if least is None or not least.value < 0.0:
+        return ""
+    return f"it would not reach one from everywhere: {least.message}"
+
+
+def _margins(input: CheckInput, robot: RobotProgram, points: Iterable[Point]) -> list[Margin] | None:
+    """Return what is left of the charge after a diversion from the end of each move; None: none has room."""
+    ground, allowed = _Surroundings.of(input, robot), allowed_seconds(input, robot)
+    places = {place: area for place in points if (area := ground.landing(place))}
+    if not places:
+        return None
+    uses, found = once(input, sorties_of_all)[robot.id].uses, _Diversions(input, robot, ground, places)
+    return [_margin(robot, use.move, use.seconds, found, allowed) for use in uses if use.move in found.ends]
 
 
 def _margin(robot: RobotProgram, index: int, used: float, found: _Diversions, allowed: float) -> Margin:

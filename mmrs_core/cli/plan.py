@@ -16,6 +16,7 @@ from mmrs_core.cli.plan_words import explanation_lines, explanation_summary, pla
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
 from mmrs_core.cli.session import CommandStages, Session, require_safe
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.verdict_words import warnings
 from mmrs_core.diagnostics import has_errors, in_order
 from mmrs_core.errors import InvalidModelError, MmrsError
 from mmrs_core.languages.modelset import model_in
@@ -103,6 +104,7 @@ def plan(
         say_json({"behaviour": file, **summary, "verdicts": stages.verdicts})
     else:
         say_lines(plan_lines(stages.scene, timed))
+        say_lines(warnings(stages.verdicts))
         say_lines(explanation_lines(stages.explanation) if explain else ())
         say_lines(written([file]))
     return 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from mmrs_core.cli.output import counted
 from mmrs_core.contributions.checks import Check, Status, Verdict, is_at_limit, message_of
 from mmrs_core.pictures.figures import quantity
 
@@ -65,6 +66,15 @@ def _by_property(verdicts: Iterable[Verdict]) -> dict[str, list[Verdict]]:
     for verdict in verdicts:
         by_property.setdefault(verdict.property, []).append(verdict)
     return by_property
+
+
+def warnings(verdicts: Iterable[Verdict]) -> Iterator[str]:
+    """Yield what was not checked and yet is known to fall short, robot by robot."""
+    found = [each for each in verdicts if each.status is Status.NOT_CHECKED and each.caveat]
+    yield from (f"  warning: {verdict_line(each)}" for each in found[:_MOST_ROBOTS])
+    more = len(found) - _MOST_ROBOTS
+    if more > 0:
+        yield f"  and {counted(more, 'more warning')}: see mmrs check"
 
 
 _SPELT_OUT = (Status.VIOLATED, Status.UNKNOWN)

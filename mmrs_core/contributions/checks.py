@@ -41,7 +41,7 @@ class Verdict:
         message: what was found, in lower case; for unknown: what is missing. It names move and area; the
             robot is printed before it.
         place: where that move, or else the robot, stands in the user's files.
-        caveat: what a safe verdict excuses or leaves out, so that it is always shown.
+        caveat: what a verdict that refuses nothing excuses or leaves out, so that it is always shown.
         error: the part of a required distance that allows for position errors, metres.
     """
 
@@ -83,6 +83,7 @@ class CheckInput:
         tasks: of the mission, by name as moves have it; empty where no mission was given.
         rally_points: (east, north) of the places where each robot would land that a policy may lead to an
             emergency area, metres; a robot that none may lead there is missing.
+        unasked_rally_points: likewise, of robots that none leads there though such areas are drawn for them.
         shared: what checks of one verification keep for each other, by the function that found it.
     """
 
@@ -96,6 +97,7 @@ class CheckInput:
     corridors: tuple[Corridor, ...] = ()
     tasks: Mapping[str, Part] = field(default_factory=dict)
     rally_points: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
+    unasked_rally_points: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
     shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -10,7 +10,7 @@ from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.rules import RobotKind, robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.scene import Area, Name, Point, Policy, RobotType
+from mmrs_core.scene import Area, AreaUse, Name, Point, Policy, RobotType
 from mmrs_runtime.policies import AFTER, ESCAPE, in_precedence
 
 
@@ -46,15 +46,21 @@ def effective_policies(
 
 def rally_points_by_policy(
     program: Program, types: Mapping[str, RobotType], kinds: Mapping[Name, RobotKind], areas: tuple[Area, ...]
-) -> dict[str, tuple[Point, ...]]:
-    """Return the rally points of the robots that a policy may lead to an emergency area, by robot."""
-    found = {}
+) -> tuple[dict[str, tuple[Point, ...]], dict[str, tuple[Point, ...]]]:
+    """Return the rally points of the robots that a policy may lead to an emergency area, by robot.
+
+    Then, likewise, those of other robots that emergency areas are drawn for.
+    """
+    asked, unasked = dict[str, tuple[Point, ...]](), dict[str, tuple[Point, ...]]()
+    drawn = [area for area in areas if area.use is AreaUse.EMERGENCY]
     for robot in program.robots:
         everywhere = effective_policies(robot, types.get(robot.type_name), kinds)
         policies = [*everywhere, *(each for t in robot.transitions.values() for each in t.policies)]
         if any(each.response == ESCAPE for each in policies):
-            found[robot.id] = rally_points_of(robot, program, types, areas).points
-    return found
+            asked[robot.id] = rally_points_of(robot, program, types, areas).points
+        elif any(area.concerns(robot.type_name) for area in drawn):
+            unasked[robot.id] = rally_points_of(robot, program, types, areas).points
+    return asked, unasked
 
 
 def explicit(policy: Policy) -> Policy:

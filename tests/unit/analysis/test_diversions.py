@@ -36,6 +36,32 @@ def test_a_robot_that_no_policy_leads_to_an_emergency_area_is_not_checked():
     )
 
 
+@pytest.mark.parametrize(
+    ("places", "warning"),
+    [
+        (
+            [(1700.5, 0.0)],
+            "it would not reach one from everywhere: after Start 'start' it has used up to 0.0 s of one"
+            " charge and needs up to 850.2 s from there to emergency area 'meadow', 800.0 s are allowed:"
+            " 51 s short",
+        ),
+        ([(1700.5, 0.0), (500.0, 0.0)], ""),
+        ([], "no emergency area has room for it"),
+    ],
+)
+def test_a_robot_that_no_policy_leads_to_areas_out_of_its_reach_has_a_warning(places, warning):
+    areas = tuple(meadow(*each) for each in places)
+    verdict = finding("diversion", given(out(), areas=areas, unasked_rally_points={"a": tuple(places)}))
+    assert (verdict.status, verdict.caveat) == (Status.NOT_CHECKED, warning)
+
+
+def test_what_is_not_known_of_a_robot_that_no_policy_leads_to_an_area_makes_no_difference():
+    homeless = replace(out(), home=None)
+    far = {"areas": (meadow(1700.5),), "unasked_rally_points": {"a": ((1700.5, 0.0),)}}
+    verdict = finding("diversion", given(homeless, **far))
+    assert (verdict.status, verdict.caveat) == (Status.NOT_CHECKED, "")
+
+
 def test_without_a_context_nothing_is_checked():
     verdict = finding("diversion", given(out(), rally_points={"a": ()}))
     assert (verdict.status, verdict.message) == (Status.NOT_CHECKED, "a: no context was given")

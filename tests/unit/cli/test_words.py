@@ -8,7 +8,7 @@ import pytest
 from mmrs_core.cli.output import table
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.tree_words import title_of
-from mmrs_core.cli.verdict_words import verdict_line, verdict_table
+from mmrs_core.cli.verdict_words import verdict_line, verdict_table, warnings
 from mmrs_core.contributions.checks import Status, Verdict
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
@@ -38,6 +38,14 @@ def test_violations_and_unknowns_are_spelt_out():
         "  depth      unknown",
         "    - depth: unknown, Alba: water density is missing",
     ]
+
+
+def test_what_was_not_checked_and_falls_short_is_a_warning_of_a_plan():
+    short = Verdict("diversion", Status.NOT_CHECKED, "Alba", message="Alba: no policy", caveat="9 s short")
+    assert list(warnings([SAFE, short, replace(short, caveat="")])) == [
+        "  warning: diversion: not checked, Alba: no policy; 9 s short"
+    ]
+    assert list(warnings([short] * 5))[-1] == "  and 2 more warnings: see mmrs check"
 
 
 def test_a_verdict_without_message_names_robot_move_and_area():
