@@ -146,17 +146,19 @@ def _links(
         for index, robot in enumerate(robots)
     }
     given: dict[str, str] = {}
+    fleet = dict.fromkeys([*links, *(each for robot in robots for each in robot.fleet)])
     for text in texts:
         robot, separator, reached = text.rpartition("=")
-        if separator and robot not in links:
-            parser.error(f"--connect {text}: unknown robot {robot!r}; the robots are {', '.join(links)}")
+        if separator and robot not in fleet:
+            parser.error(f"--connect {text}: unknown robot {robot!r}; the robots are {', '.join(fleet)}")
         if not separator and len(robots) > 1:
             parser.error(f"--connect {text}: several robots; name one: --connect {robots[0].id}={text}")
         name = robot or robots[0].id
         if name in given:
             parser.error(f"--connect {text}: {name!r} already has the connection {given[name]}")
         given[name] = reached
-        links[name] = _link(parser, reached)
+        if name in links:
+            links[name] = _link(parser, reached)
     taken = [each for each in links.values() if each[1]]
     for url, system in taken:
         if taken.count((url, system)) > 1:

@@ -1,5 +1,7 @@
 """The command line of controllers: what makes no sense is refused before anything moves."""
 
+from dataclasses import replace
+
 import pytest
 from flight_crew import robot_of
 
@@ -53,6 +55,18 @@ def test_a_number_that_is_none_is_refused(asked, capsys, option, value):
 
 def test_nobody_needs_to_wait_for_a_battery(asked):
     assert asked("--battery-patience", "0").battery_patience == 0.0
+
+
+def test_the_links_of_the_whole_fleet_serve_the_controller_of_one_robot(tmp_path, capsys):
+    robots, driver = [replace(robot_of(id="beta"), fleet=("alpha", "beta"))], MavlinkDriver()
+    team = ("--connect", "alpha=udpin:127.0.0.1:14550@1", "--connect", "beta=udpin:127.0.0.1:14560@2")
+    log, parser = ("--log", str(tmp_path)), parser_for(robots, driver)
+    assert driver.settle(parser, robots, parser.parse_args([*log, *team])) == {
+        "beta": "udpin:127.0.0.1:14560"
+    }
+    with pytest.raises(SystemExit):
+        options_of(parser, robots, driver, [*log, "--connect", "gamma=udpin:127.0.0.1:14550"])
+    assert "unknown robot 'gamma'; the robots are beta, alpha" in capsys.readouterr().err
 
 
 def test_one_robot_has_one_link(asked, capsys):
