@@ -18,7 +18,7 @@ from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
-from mmrs_core.planning.remedies import counted, for_all_charges, for_diversions, for_times, or_else, too_long
+from mmrs_core.planning.remedies import counted, for_all_charges, for_diversions, or_else, too_long
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import (
@@ -30,7 +30,8 @@ from mmrs_core.planning.separation import (
 )
 from mmrs_core.planning.signalling import DEAR, signalled
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.scene import Plan, Scene
+from mmrs_core.planning.time_remedies import for_times
+from mmrs_core.scene import Plan, RobotPlan, Scene
 
 
 class _Find(Protocol):
@@ -276,7 +277,7 @@ def _plan_of(
     decisions, found = search.find(team, in_turns=in_turns)
     if isinstance(found, Shortfall):
         raise _ShortError("no plan", partial(_reasons, team, jobs, found))
-    _refuse_late(team, jobs, found.spans)
+    _refuse_late(team, jobs, found.spans, lambda: _robots(team, jobs, decisions))
     recorded = schedule(team, jobs, decisions, record=True)
     if isinstance(recorded, Shortfall):
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
@@ -287,8 +288,13 @@ def _plan_of(
         raise _NotBetterError("no better plan")
     made = _kept_apart(team, jobs, search, decisions, first, best)
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
-    _refuse_late(team, jobs, spans)
+    _refuse_late(team, jobs, spans, lambda: made.robots)
     return first, made
+
+
+def _robots(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Sequence[RobotPlan]:
+    found = schedule(team, jobs, decisions, record=True)
+    return assemble(team, jobs, found).robots if isinstance(found, Schedule) else ()
 
 
 def _with_remedies(team: Team, jobs: Sequence[Job]) -> Iterator[str]:
@@ -345,9 +351,14 @@ def _refuse(reasons: Sequence[str], what: str) -> None:
         raise InfeasibleError(_words(what, reasons), reasons)
 
 
-def _refuse_late(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, float]]) -> None:
+def _refuse_late(
+    team: Team,
+    jobs: Sequence[Job],
+    spans: Mapping[str, tuple[float, float]],
+    robots: Callable[[], Sequence[RobotPlan]],
+) -> None:
     if broken_times(team, spans):
-        raise _UnexplainedError("no plan keeps all times", lambda: [*for_times(team, jobs, spans)])
+        raise _UnexplainedError("no plan keeps all times", lambda: [*for_times(team, jobs, spans, robots())])
 
 
 def _words(what: str, reasons: Sequence[str]) -> str:

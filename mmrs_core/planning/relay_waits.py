@@ -16,12 +16,13 @@ from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.reach import Reach, reach_of, unsure
-from mmrs_core.planning.remedies import for_times, lifetime_of
+from mmrs_core.planning.remedies import lifetime_of
 from mmrs_core.planning.separation import TooNearError, separated
 from mmrs_core.planning.signalling import signalled
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.team import Team
+from mmrs_core.planning.time_remedies import for_times
 from mmrs_core.scene import (
     Await,
     Launch,

@@ -10,7 +10,6 @@ from math import ceil, dist, floor, inf
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.materials import shortages
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
-from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.planning.travel import Spaces
 from mmrs_core.scene import Area, AreaUse, Corridor, Robot, Scene
@@ -238,32 +237,6 @@ def _landing(team: Team, name: str, away: float) -> Area:
     half = 2.0 * max(robot.clearance, team.scene.minimum_separation or 0.0) * len(team.scene.robots)
     shell = tuple((east + half * x, north + half * y) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
     return Area(f"area for {name}", AreaUse.EMERGENCY, shell, types=frozenset({robot.type.name}))
-
-
-def for_times(team: Team, jobs: Sequence[Job], spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:
-    """Yield each deadline and longest duration that the best schedule found breaks, and what would do.
-
-    Args:
-        team: of the scene.
-        jobs: which show when each would end as the only task.
-        spans: by task: when it begins and ends.
-    """
-    single = {job.name: replace(job, after=()) for job in jobs if job.choice is None}
-    for name, words, _ in broken_times(team, spans):
-        begin, end = spans[name]
-        if "deadline" not in words:
-            yield f"task '{name}' {words}; {ceil(end - begin)} s would do"
-            continue
-        alone = schedule(team, [single[name]], Decisions((name,))) if name in single else None
-        soonest = alone.spans[name][1] if isinstance(alone, Schedule) else 0.0
-        sooner = (
-            "; no robot can end it sooner"
-            if round(end - soonest) == 0
-            else f"; as the only task it would end after {ceil(soonest)} s"
-            if soonest
-            else ""
-        )
-        yield f"task '{name}' {words}{sooner}; a deadline of {ceil(end)} s would do"
 
 
 def for_all_charges(team: Team, jobs: Sequence[Job], job: Job) -> Iterator[str]:

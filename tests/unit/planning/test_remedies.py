@@ -8,6 +8,7 @@ from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
+from mmrs_runtime.timing import LegTiming
 
 CUTS = tuple(range(50, 1000, 50))
 USABLE = 0.8
@@ -158,6 +159,23 @@ def test_deadlines_that_are_proposed_together_are_enough():
     tasks = tuple(replace(each, deadline=late.get(each.name, each.deadline)) for each in whole.tasks)
     assert plan(replace(whole, tasks=tasks))
     assert any("as the only task it would end after 112 s" in each for each in caught.value.reasons)
+
+
+@pytest.mark.parametrize(("spread", "late"), [(0.0, False), (0.2, True)])
+def test_a_window_that_is_narrower_than_a_robot_is_uncertain_is_refused_with_how_early_it_may_be(
+    spread, late
+):
+    """It comes at 112 s, if all goes as expected, or up to 23 s earlier, for which it waits."""
+    unsure = with_kinematics(robot(), timing=LegTiming(spread=spread))
+    works = {"a": visit((1000.0, 0.0, 20.0), hold=10.0)}
+    whole = scene([unsure], works, tasks={"a": task("a", earliest=110.0, deadline=125.0)})
+    if not late:
+        assert plan(whole).ends["a"] == pytest.approx(121.7, abs=0.1)
+        return
+    words = refusal(whole)
+    assert "'r1' may come to 'a' up to 23 s earlier than planned, and waits until 133 s" in words
+    assert "for its earliestStart, 110 s; no robot can end it sooner; a deadline of 143 s would do" in words
+    assert plan(with_tasks(whole, deadline=143.0)).begins["a"] > 132.0
 
 
 def test_a_distance_between_robots_that_is_proposed_can_be_kept():
