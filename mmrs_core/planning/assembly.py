@@ -8,7 +8,8 @@ from dataclasses import replace
 from mmrs_core.planning.corridors import crossings
 from mmrs_core.planning.jobs import Job, is_control
 from mmrs_core.planning.omissions import omissions_of
-from mmrs_core.planning.schedule import Schedule, signal_name
+from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule, signal_name
+from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.states import State
 from mmrs_core.planning.team import Team, homebound_of
 from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step, all_steps
@@ -24,16 +25,14 @@ _MOST_NAMES = 20
 """Tasks that are named with one reason."""
 
 
-def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
+def assemble(team: Team, jobs: Sequence[Job], found: Schedule) -> Plan:
     """Return the plan of a schedule whose states carry all steps."""
     finished = {
-        name: team.pilots[name].finish(schedule.states[name])
-        for name in team.pilots
-        if name in schedule.backs
+        name: team.pilots[name].finish(found.states[name]) for name in team.pilots if name in found.backs
     }
     steps = {name: state.steps() for name, state in finished.items()}
     signals = {
-        signal_name(job.name, robot): (job.name, robot) for job in jobs for robot in schedule.ends[job.name]
+        signal_name(job.name, robot): (job.name, robot) for job in jobs for robot in found.ends[job.name]
     }
     steps = _with_signals(steps, signals)
     spans = spans_of(team.scene, steps)
@@ -44,13 +43,21 @@ def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         ends={name: end for name, (_, end) in spans.items()},
         left_out=omissions_of(team.scene, steps),
         notes=(
-            *_stranded(team, schedule),
+            *_stranded(team, found),
             *_past_corridors(team.scene, steps),
             *_of_works(team.scene, steps),
             *_unstated_flow(team.scene),
             *_NOTES,
         ),
     )
+
+
+def planned(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
+    """Return the plan of decisions, before robots are kept apart; None where they lead to none."""
+    found = schedule(team, jobs, decisions, record=True)
+    if isinstance(found, Shortfall) or broken_times(team, found.spans):
+        return None
+    return assemble(team, jobs, found)
 
 
 def _of_works(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> Iterator[str]:
@@ -164,7 +171,7 @@ def why_idle(team: Team, robot: str) -> str:
     return "; ".join(f"{_some(tasks)}: {reason}" for reason, tasks in reasons.items())
 
 
-def idle_apart(scene: Scene, plan: Plan, tried: Iterable[tuple[float, frozenset[str]]]) -> Plan:
+def idle_apart(scene: Scene, plan: Plan, tried: Mapping[tuple[RobotPlan, ...], float]) -> Plan:
     """Return a plan with the reason of each robot that has no work only because robots keep apart.
 
     That is known where every plan that was found without it ends later, before its robots are kept apart,
@@ -173,15 +180,14 @@ def idle_apart(scene: Scene, plan: Plan, tried: Iterable[tuple[float, frozenset[
     Args:
         scene: of the plan.
         plan: as its robots keep apart.
-        tried: the makespan and the robots without work of each plan before that.
+        tried: makespans of plans before that, by what their robots do.
     """
     if scene.minimum_separation is None:
         return plan
     soonest = dict[tuple[str, bool], float]()
-    idle = {each.robot for each in plan.robots if each.idle}
-    for makespan, without in tried:
-        for robot in idle:
-            key = robot, robot in without
+    for robots, makespan in tried.items():
+        for each in robots:
+            key = each.robot, not each.steps
             soonest[key] = min(soonest.get(key, plan.makespan), makespan)
 
     def explained(each: RobotPlan) -> RobotPlan:

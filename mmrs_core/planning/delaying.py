@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.assembly import spans_of
 from mmrs_core.planning.strokes import length_of
-from mmrs_core.scene import Await, Branch, Plan, Recharge, Recover, RobotPlan, Scene, Signal, Step, Transit
+from mmrs_core.scene import (
+    Await,
+    Branch,
+    Launch,
+    Plan,
+    Recharge,
+    Recover,
+    RobotPlan,
+    Scene,
+    Signal,
+    Step,
+    Transit,
+)
 
 
 def delayed(scene: Scene, plan: Plan, robot: str, waits: Mapping[int, float]) -> Plan:
@@ -102,16 +114,16 @@ def _changed(before: RobotPlan, steps: tuple[Step, ...]) -> RobotPlan:
 
 
 def _away(steps: Iterable[Step]) -> float:
-    """Return the seconds that a robot waits, or is on routes, between leaving home and being back."""
+    """Return the seconds between leaving home and being back."""
     seconds, away = 0.0, False
     for step in steps:
-        if isinstance(step, Await):
-            seconds += away * (step.end - step.begin)
-        elif not isinstance(step, Signal):
-            away = not isinstance(step, Recover | Recharge)
-            seconds += isinstance(step, Transit) * (step.end - step.begin)
+        away = away or not isinstance(step, Await | Signal | Recharge)
+        seconds += away * (step.end - step.begin)
+        away = away and not isinstance(step, Recover | Recharge)
     return seconds
 
 
-def _metres(steps: Iterable[Step]) -> float:
-    return sum(length_of(step.route) for step in steps if isinstance(step, Transit))
+def _metres(steps: Sequence[Step]) -> float:
+    """Return how long ways are, up and down too."""
+    upright = (abs(step.up - step.at[2]) for step in steps if isinstance(step, Launch | Recover))
+    return sum(upright) + sum(length_of(step.route) for step in steps if isinstance(step, Transit))

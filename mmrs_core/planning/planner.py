@@ -12,9 +12,10 @@ from operator import itemgetter
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.assembly import assemble, idle_apart
+from mmrs_core.planning.assembly import assemble, idle_apart, planned
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.effort import Effort
+from mmrs_core.planning.exchanging import levelled
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
@@ -47,12 +48,12 @@ class _Search:
     Attributes:
         find: decisions.
         dear: plans whose robots are kept apart at a cost, if at all.
-        tried: of each plan before its robots are kept apart: its makespan, and the robots without work.
+        tried: makespans by what robots do, before they are kept apart.
     """
 
     find: _Find
     dear: list[tuple[Team, Plan]]
-    tried: list[tuple[float, frozenset[str]]]
+    tried: dict[tuple[RobotPlan, ...], float]
 
 
 def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
@@ -85,7 +86,7 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     find = partial(find_decisions, jobs=jobs, effort=effort)
     best: Mapping[str, int] = {}
     found, refusal = None, InfeasibleError("no plan")
-    dear, tried = list[tuple[Team, Plan]](), list[tuple[float, frozenset[str]]]()
+    dear, tried = list[tuple[Team, Plan]](), dict[tuple[RobotPlan, ...], float]()
     tries = ((wanted, partial(find, seed=seed)) for wanted in ({}, *robot_counts(team, jobs)))
     longer = ((best, partial(find, seed=seed + 1, long=True)) for _ in range(effort.timed))
     for wanted, each in chain(tries, longer):
@@ -93,6 +94,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
             break
         try:
             made = _plan_asking(teams, wanted, jobs, _Search(each, dear, tried), found)
+        except _NotBetterError:
+            continue
         except InfeasibleError as error:
             refusal = refusal if wanted else error
             continue
@@ -156,7 +159,7 @@ class _Remembered:
 
 
 class _NotBetterError(InfeasibleError):
-    """A plan is not better than one that was found before, even before its robots are kept apart."""
+    """A plan is not better than one before, or the same, even before its robots are kept apart."""
 
 
 class _UnexplainedError(InfeasibleError):
@@ -282,9 +285,9 @@ def _plan_of(
     if isinstance(recorded, Shortfall):
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
     first = assemble(team, jobs, recorded)
-    idle = frozenset(each.robot for each in first.robots if not each.steps)
-    search.tried.append((first.makespan, idle))
-    if _better(first, best) is best:
+    known = first.robots in search.tried
+    search.tried[first.robots] = first.makespan
+    if known or _better(first, best) is best:
         raise _NotBetterError("no better plan")
     made = _kept_apart(team, jobs, search, decisions, first, best)
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
@@ -319,31 +322,35 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
 def _kept_apart(
     team: Team, jobs: Sequence[Job], search: _Search, decisions: Decisions, found: Plan, best: Plan | None
 ) -> Plan:
-    """Return a plan as its robots keep apart: by waits, signals and levels, or by later starts.
+    """Return a plan as its robots keep apart: by waits, flight levels and signals, or by later starts.
 
     What is not better than the best so far is not sought any further.
     """
+    made, refusal = None, None
     try:
-        waiting = separated(team, found)
+        made = separated(team, found)
+        if made.makespan <= DEAR * found.makespan:
+            return made
     except TooNearError as error:
+        refusal = error
+    least = best if made is None else _better(made, best)
+    levels = levelled(team, jobs, decisions, found, inf if least is None else least.makespan)
+    if levels is not None and not levels.conflicts:
+        made = levels.plan if made is None else _better(levels.plan, made)
+    elif made is None:
         search.dear.append((team, found))
-        later = starting_later(team, decisions, partial(_planned_better, team, jobs, best))
-        if later is None:
-            raise error from None
-        return later
-    if waiting.makespan <= DEAR * found.makespan:
-        return waiting
-    made = signalled(team, found, _better(waiting, best).makespan) or waiting
-    least = _better(made, best)
-    return starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
+    if made is not None and made.makespan > DEAR * found.makespan:
+        made = signalled(team, found, _better(made, best).makespan) or made
+    least = best if made is None else _better(made, best)
+    made = starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
+    if made is None:
+        raise refusal or InfeasibleError("no plan")
+    return made
 
 
 def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:
-    found = schedule(team, jobs, decisions, record=True)
-    if isinstance(found, Shortfall) or broken_times(team, found.spans):
-        return None
-    made = assemble(team, jobs, found)
-    return None if _better(made, best) is best else made
+    made = planned(team, jobs, decisions)
+    return None if made is None or _better(made, best) is best else made
 
 
 def _refuse(reasons: Sequence[str], what: str) -> None:

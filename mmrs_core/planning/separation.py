@@ -189,6 +189,7 @@ class Traffic:
     Attributes:
         plan: of all robots.
         least: metres that they have to keep apart.
+        timing: makes its timelines.
         conflicts: the earliest of each two robots, by their names.
     """
 
@@ -213,7 +214,7 @@ class Traffic:
         self.plan, self.least = plan, least
         self._charges = None if pilots is None else Charges(pilots)
         self._robots = {robot.name: robot for robot in scene.robots}
-        self._timing = timing or Timelines(self._robots)
+        self.timing = timing or Timelines(self._robots)
         self._names = tuple(each.robot for each in plan.robots)
         self._timelines: Mapping[str, Timeline] = {}
         self._pieces: Mapping[str, Pieces] = {}
@@ -237,7 +238,7 @@ class Traffic:
 
     def _update(self, changed: frozenset[str], names: Collection[str]) -> None:
         """Find where those of some robots who have changed come too near to others of them."""
-        self._timelines, self._delays, self._apart = self._timing.of(self.plan), {}, {}
+        self._timelines, self._delays, self._apart = self.timing.of(self.plan), {}, {}
         fresh = {
             name: pieces_of(self._timelines[name].rides, number)
             for number, name in enumerate(self._names)
@@ -255,6 +256,10 @@ class Traffic:
 
     def _proximity(self, parts: Sequence[Pieces]) -> Proximity:
         return Proximity(joined(parts), [self._robots[name].home for name in self._names], self.least)
+
+    def meetings(self, pieces: Pieces) -> tuple[Indices, Indices]:
+        """Return the pairs of other pieces of its robots, at their steps, on which two may come too near."""
+        return self._unordered(pieces, *self._proximity([pieces]).meetings(_SPARE))
 
     def _unordered(self, pieces: Pieces, i: Indices, j: Indices) -> tuple[Indices, Indices]:
         """Return those pairs of which neither piece is over for certain before the other one begins."""
@@ -310,6 +315,10 @@ class Traffic:
     def steps(self, name: str) -> tuple[Step, ...]:
         """Return what a robot does."""
         return next(each.steps for each in self.plan.robots if each.robot == name)
+
+    def timeline(self, name: str) -> Timeline:
+        """Return where a robot may be, and when."""
+        return self._timelines[name]
 
     def overdrawn_in(self, plan: Plan) -> set[str]:
         """Return the robots that wait longer in another plan and then take more than a charge allows."""

@@ -33,7 +33,7 @@ _Offers: TypeAlias = Generator[tuple[Plan, float], bool | None, None]
 DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
 
-_STEPS = 100_000
+_STEPS = 20_000
 """Steps of plans that are looked at, at most: one plan for each wait or level, at least one a conflict."""
 
 _PLACES = 6
@@ -144,10 +144,9 @@ def _lifting(team: Team, traffic: Traffic, late: str, place: int) -> _Offers:
     if not isinstance(step, Transit):
         return
     start, goal, highest = step.route[0], step.route[-1], max(up for _, _, up in step.route)
-    for number in range(1, _LEVELS + 1):
-        level = max(start[2], goal[2]) + number * (traffic.least + 0.1)
-        route = travel.above(start, goal, level) if level > highest else None
-        if route is None:
+    heights = (number * (traffic.least + 0.1) for number in range(1, _LEVELS + 1))
+    for route in (each for higher in heights for each in travel.above(start, goal, higher)):
+        if max(up for _, _, up in route) <= highest:
             continue
         seconds = travel.going(route, step.speed).expected
         lifted = replace(step, end=step.begin + seconds, route=route)

@@ -9,7 +9,7 @@ until after the last.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from itertools import pairwise
@@ -99,30 +99,19 @@ class Timeline:
         places: where it stands when each step begins, and after the last one, see `stops`.
         known: for each step, by other robot: the step that this one has begun at least by then.
         moments: seconds at which each step begins, and the last one ends, at the earliest and at the latest.
+        states: how it is when each step begins, and after the last one.
     """
 
     parts: tuple[_Part, ...]
     places: tuple[_Place, ...]
     known: tuple[Mapping[str, int], ...]
     moments: tuple[tuple[float, float], ...]
+    states: tuple[_State, ...]
 
     @property
     def rides(self) -> tuple[Ride, ...]:
         """Return the rides in order; whatever the robot does last, it then stays where it is."""
-        return tuple(
-            Ride(
-                each.points,
-                each.early + early,
-                each.late + late,
-                each.least,
-                each.radius,
-                each.relation,
-                each.step + step,
-                each.over + step,
-            )
-            for rides, early, late, step in self.parts
-            for each in rides
-        )
+        return tuple(_rides(self.parts))
 
     @property
     def stops(self) -> tuple[Ride, ...]:
@@ -131,6 +120,23 @@ class Timeline:
             Ride((here,), early, late, (), radius, relation, step, step + 1)
             for step, (here, early, late, radius, relation) in enumerate(self.places)
         )
+
+
+def _rides(parts: Iterable[_Part]) -> Iterator[Ride]:
+    return (
+        Ride(
+            each.points,
+            each.early + early,
+            each.late + late,
+            each.least,
+            each.radius,
+            each.relation,
+            each.step + step,
+            each.over + step,
+        )
+        for rides, early, late, step in parts
+        for each in rides
+    )
 
 
 def timelines_of(
@@ -188,6 +194,16 @@ class Timelines:
                 raise InternalError("robots of a plan wait for each other")
         return {name: walk.ended() for name, walk in walks.items()}
 
+    def instead(self, name: str, timeline: Timeline, index: int, steps: Sequence[Step]) -> Iterator[Ride]:
+        """Yield the rides of a robot that from a step on does other steps, in which it waits for no robot."""
+        walk = self._walk(name)
+        walk.state, (walk.now, walk.by) = timeline.states[index], timeline.moments[index]
+        for step in steps:
+            walk.begin(step, {})
+        yield from (
+            replace(each, step=each.step + index, over=each.over + index) for each in _rides(walk.parts)
+        )
+
     def _walk(self, name: str) -> _Walk:
         robot = self._robots[name]
         return _Walk(robot, kinematics_of(robot), self._hasty, self._longest, self._passages[name])
@@ -235,7 +251,7 @@ class _Walk:
         here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet. off: whether its motors are, as at home.
         merges: whether it comes from the arms of a choice, and must stop before it gives a signal.
-        parts, places, known, moments: see `Timeline`.
+        parts, places, known, moments, states: see `Timeline`.
     """
 
     robot: Robot
@@ -253,6 +269,7 @@ class _Walk:
     parts: list[_Part] = field(default_factory=list)
     places: list[_Place] = field(default_factory=list)
     moments: list[tuple[float, float]] = field(default_factory=list)
+    states: list[_State] = field(default_factory=list)
     known: list[Mapping[str, int]] = field(default_factory=lambda: [{}])
 
     def __post_init__(self) -> None:
@@ -277,12 +294,15 @@ class _Walk:
     def _arrive(self) -> None:
         self.places.append((self.here, self._since(), self.by, self.radius, self._relation()))
         self.moments.append((self.now, self.by))
+        self.states.append(self.state)
 
     def ended(self) -> Timeline:
         self._arrive()
         self.by = inf
         self._stay(0.0)
-        return Timeline(tuple(self.parts), tuple(self.places), tuple(self.known), tuple(self.moments))
+        return Timeline(
+            tuple(self.parts), tuple(self.places), tuple(self.known), tuple(self.moments), tuple(self.states)
+        )
 
     def add(self, step: Step, given: dict[str, _Given]) -> None:
         if isinstance(step, Await):
@@ -311,7 +331,7 @@ class _Walk:
 
     def _passage(self, step: Step) -> _Passage:
         """Return how the robot, as it is, goes through a step."""
-        walk = replace(self, parts=[], places=[], moments=[], now=0.0)
+        walk = replace(self, parts=[], places=[], moments=[], states=[], now=0.0)
         walk.by, walk.state = 0.0, self.state
         walk._arrive()
         walk._go_through(step)

@@ -468,17 +468,53 @@ class Travel:
     def _across(self, start: Position, goal: Position) -> Route | str:
         return self._routed(start, goal, level=self._altitude)
 
-    def above(self, start: Position, goal: Position, level: float) -> tuple[Position, ...] | None:
-        """Return a path up to a level, along it and down; None where that is blocked, too high or not asked.
+    def above(
+        self, start: Position, goal: Position, higher: float, peaks: Iterable[float] = ()
+    ) -> Iterator[tuple[Position, ...]]:
+        """Yield paths between two places that lead above both; none where they are blocked or not asked for.
+
+        One leads up, along a level and down; the others up to a peak, and down from there, on a slant.
 
         Args:
-            start, goal: of the path.
-            level: metres, higher than both.
+            start, goal: of the paths.
+            higher: metres above the higher one of both.
+            peaks: shares of the straight line.
         """
-        fits = self.kinematics.launches and self._within(level) == level and start[:2] != goal[:2]
-        if not fits or self.entries or self.exits:
-            return None
-        return self._raised(start, goal, level)
+        level = max(start[2], goal[2]) + higher
+        if not self._flies_at(level) or start[:2] == goal[:2]:
+            return
+        raised = self._raised(start, goal, level)
+        if raised is not None:
+            yield raised
+        for share in peaks:
+            east, north = (a + share * (b - a) for a, b in zip(start[:2], goal[:2], strict=True))
+            with suppress(UnreachableError):
+                up = self.space.route(start, (east, north, level))
+                yield (*up, *self.space.route(up[-1], goal)[1:])
+
+    def from_above(
+        self, height: float, other: Position, corridors: Corridors
+    ) -> Iterator[tuple[Position, ...]]:
+        """Yield paths from a height above home to a place, or back from there: on a slant, and level.
+
+        Args:
+            height: of launch or recovery.
+            other: place that is not home.
+            corridors: its entries or exits.
+        """
+        above, reason = self._above_home(height)
+        if reason or not self._flies_at(height) or above[:2] == other[:2]:
+            return
+        start, goal = (above, other) if corridors is self.entries else (other, above)
+        with suppress(UnreachableError):
+            yield self.space.route(start, goal)
+        raised = self._raised(start, goal, height)
+        if raised is not None:
+            yield raised
+
+    def _flies_at(self, height: float) -> bool:
+        fits = self.kinematics.launches and self._within(height) == height
+        return fits and not self.entries and not self.exits
 
     def _routed(self, start: Position, goal: Position, level: float | None = None) -> Route | str:
         """Return the route at a level where that is clear, else the quickest; or why there is none."""
