@@ -131,7 +131,7 @@ def demonstrate(
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
     run = fly(session, program, place, {}, Chosen(settings.backend, settings.options, settings.own))
-    logs = write_logs(run, program, folder / LOGS, place.types, session.contributions.robot_kinds)
+    logs = write_logs(run, program, folder / LOGS, place.types, session.contributions)
     files.append(("steps of each robot in the simulation", folder / LOGS, len(logs)))
     pictures = write_pictures(picture_of(stages), folder)
     files += [("map, timeline and altitude profile", pictures[0], 1), ("map", pictures[1], 1)]

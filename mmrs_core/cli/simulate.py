@@ -73,8 +73,8 @@ def simulate(
     if output is not None:
         refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), session.inputs)
     run = fly(session, loaded.program, loaded.place, conditions, chosen)
-    types, kinds = loaded.place.types, session.contributions.robot_kinds
-    logs = write_logs(run, loaded.program, output, types, kinds) if output is not None else ()
+    known = loaded.place.types, session.contributions
+    logs = write_logs(run, loaded.program, output, *known) if output is not None else ()
     found = {"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs}
     answer(found, (*run_lines(run), *written(logs)), as_json=json)
     return 0 if succeeded(run) else 1

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from heapq import merge
 from itertools import pairwise
-from math import dist
+from math import dist, inf
+from operator import itemgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -16,17 +18,19 @@ import typer
 
 from mmrs_core.behaviour.box_files import SIMULATION, black_boxes
 from mmrs_core.behaviour.log import read_log
-from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.output import progress
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.session import Session
 from mmrs_core.contributions.execution import Sample
-from mmrs_core.contributions.rules import RobotKind, robot_kind_of
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.rules import robot_kind_of
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.errors import MmrsError, UnsupportedError
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pipeline import BehaviourContext, simulate
 from mmrs_core.resources import named, new_folders
-from mmrs_core.scene import Name, RobotType
+from mmrs_core.scene import Position, RobotType
 from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.blackbox import black_box_path
 from mmrs_runtime.records.log import LogWriter
@@ -35,6 +39,7 @@ from mmrs_runtime.semantics import Outcome
 
 if TYPE_CHECKING:
     from mmrs_core.pictures.flights.fixes import Datum
+    from mmrs_core.pictures.flights.photos import Shot
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 
@@ -143,7 +148,7 @@ def write_logs(
     program: Program,
     folder: Path,
     types: Mapping[str, RobotType] | None = None,
-    kinds: Mapping[Name, RobotKind] | None = None,
+    contributions: Contributions | None = None,
 ) -> tuple[Path, ...]:
     """Write the log and the black box of every robot, all or none; return the logs.
 
@@ -160,7 +165,7 @@ def write_logs(
             with LogWriter(Path(staged), synced=False) as writer:
                 for record in run.records:
                     writer.write(record)
-            write_boxes(run, program, types or {}, Path(staged), kinds or {})
+            write_boxes(run, program, types or {}, Path(staged), contributions)
             remove_boxes(folder)
             _remove_older(folder, set(names))
             for file in sorted(Path(staged).iterdir()):
@@ -250,15 +255,18 @@ def write_boxes(
     program: Program,
     types: Mapping[str, RobotType],
     folder: Path,
-    kinds: Mapping[Name, RobotKind],
+    contributions: Contributions | None = None,
 ) -> tuple[Path, ...]:
     """Write a black box for every robot whose way the simulation tells; return the paths.
 
-    Places are metres from home; between two of them a robot went straight. There is no time of day.
+    Places are metres from home; between two of them a robot went straight. There is no time of day. Photos
+    that a camera takes by distance are there one by one.
     """
     from mmrs_core.pictures.flights.fixes import datum_of
 
     name = run.records[0].run if run.records else ""
+    kinds = contributions.robot_kinds if contributions is not None else {}
+    vehicles = tuple(contributions.vehicles.values()) if contributions is not None else ()
     written = []
     for robot in program.robots:
         if track := run.tracks.get(robot.id):
@@ -266,28 +274,59 @@ def write_boxes(
             robot_type = types.get(robot.type_name)
             kind = robot_kind_of(robot_type, kinds) if robot_type is not None else None
             datum = datum_of(robot, program, robot_type, kinds=kinds)
-            lines = _lines(name, robot.id, track, datum, kind.vehicle if kind is not None else "")
+            photos = _photos(run, robot, track, datum, robot_type, vehicles)
+            lines = _lines(name, robot.id, track, datum, kind.vehicle if kind is not None else "", photos)
             with named(path):
                 path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
             written.append(path)
     return tuple(written)
 
 
-def _lines(run: str, robot: str, track: Sequence[Sample], datum: Datum, vehicle: str) -> Iterator[str]:
+def _photos(
+    run: SimulatedRun,
+    robot: RobotProgram,
+    track: Sequence[Sample],
+    datum: Datum,
+    robot_type: RobotType | None,
+    vehicles: Iterable[VehicleFactory],
+) -> tuple[Shot, ...]:
+    """Return all photos of a robot, those by distance where it was when they were due."""
+    import numpy as np
+
+    from mmrs_core.pictures.flights.flight import Flown
+    from mmrs_core.pictures.flights.photos import shots_of
+    from mmrs_core.pictures.flights.tracks import Track
+
+    times, positions = (np.array([getattr(each, what) for each in track]) for what in ("time", "position"))
+    whole = Track(times, positions, np.full(len(track), np.nan), np.zeros(len(track), np.bool_))
+    records = tuple(each for each in run.records if each.robot == robot.id)
+    return shots_of(robot, Flown(robot.id, records, whole, simulated=True), datum, robot_type, vehicles)
+
+
+def _lines(
+    run: str, robot: str, track: Sequence[Sample], datum: Datum, vehicle: str, photos: Sequence[Shot]
+) -> Iterator[str]:
     full = track[0].energy
     common = {"run": run, "robot": robot}
 
-    def line(time: float, kind: str, **content: object) -> str:
+    def line(time: float, kind: str, **content: object) -> tuple[float, str]:
         whole = {**common, "time": round(time, 6), "wall": "", "kind": kind, **content}
-        return json.dumps(whole, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+        return time, json.dumps(whole, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
-    yield line(0.0, "start", link=SIMULATION, vehicle=vehicle, firmware="", home=None, versions={})
-    for sample in track:
-        east, north, up = sample.position
-        place = {"north": north - datum.home[1], "east": east - datum.home[0], "height": up - datum.up}
-        shown = {name: round(value, 3) for name, value in place.items()}
-        left = None if not full or sample.energy is None or full == float("inf") else sample.energy / full
-        rounded = None if left is None else round(left, 4)
-        yield line(
-            sample.time, "fix", place=shown, speed=None, heading=None, energy=rounded, mode="", armed=None
-        )
+    def place(position: Position) -> dict[str, float]:
+        east, north, up = position
+        found = {"north": north - datum.home[1], "east": east - datum.home[0], "height": up - datum.up}
+        return {name: round(value, 3) for name, value in found.items()}
+
+    def fix(sample: Sample) -> tuple[float, str]:
+        left = None if not full or sample.energy is None or full == inf else round(sample.energy / full, 4)
+        more = {"speed": None, "heading": None, "energy": left, "mode": "", "armed": None}
+        return line(sample.time, "fix", place=place(sample.position), **more)
+
+    taken = (
+        line(shot.time, "photo", index=index, place=place(shot.at))
+        for index, shot in enumerate(photos)
+        if shot.at is not None
+    )
+    yield line(0.0, "start", link=SIMULATION, vehicle=vehicle, firmware="", home=None, versions={})[1]
+    yield from (each for _, each in merge(map(fix, track), taken, key=itemgetter(0)))

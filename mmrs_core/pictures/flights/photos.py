@@ -72,7 +72,8 @@ def shots_of(
     vehicles: Iterable[VehicleFactory] = (),
 ) -> tuple[Shot, ...]:
     """Return all photos of a robot by time, each commanded one matched with the nearest confirmation."""
-    taken = [*_taken(flown, datum)]
+    done = SIMULATED if flown.simulated else TAKEN
+    taken = [*_taken(flown, datum, done)]
     shots: list[Shot] = []
     known = tuple(vehicles)
     acts = [act for act in acts_of(robot, flown) if takes_photo(act[2], robot_type, known)]
@@ -80,9 +81,9 @@ def shots_of(
         near = min(taken, key=lambda shot: abs(shot.time - time), default=None)
         if near is not None and abs(near.time - time) <= _MATCHING:
             taken.remove(near)
-            shots.append(Shot(near.time, near.at, TAKEN, near.index, move.id, move.task, action))
+            shots.append(Shot(near.time, near.at, done, near.index, move.id, move.task, action))
         else:
-            state = SIMULATED if flown.simulated else TAKEN if _devices_confirm(flown) else UNCONFIRMED
+            state = done if flown.simulated or _devices_confirm(flown) else UNCONFIRMED
             shots.append(Shot(time, flown.track.at(time), state, None, move.id, move.task, action))
     return tuple(sorted([*shots, *taken], key=lambda shot: shot.time))
 
@@ -121,7 +122,7 @@ def _devices_confirm(flown: Flown) -> bool:
     return any(entry.content.get("confirms") is True for entry in flown.of_kind("start"))
 
 
-def _taken(flown: Flown, datum: Datum) -> Iterator[Shot]:
+def _taken(flown: Flown, datum: Datum, state: str) -> Iterator[Shot]:
     for entry in flown.of_kind("photo"):
         index = number_of(entry.content.get("index"))
         place = entry.content.get("place")
@@ -129,7 +130,7 @@ def _taken(flown: Flown, datum: Datum) -> Iterator[Shot]:
         unknown = isinstance(place, dict) and not (place.get("latitude", 1) or place.get("longitude", 1))
         at = None if unknown else datum.position(place)
         at = at if at is not None else flown.track.at(entry.time)
-        yield Shot(entry.time, at, TAKEN, None if index is None else int(index))
+        yield Shot(entry.time, at, state, None if index is None else int(index))
 
 
 def acts_of(robot: RobotProgram, flown: Flown) -> Iterator[Act]:

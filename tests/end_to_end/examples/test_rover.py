@@ -8,8 +8,10 @@ import pytest
 import shapely
 
 from mmrs_core import pipeline
+from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.checks import Status
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Serve
 
 pytestmark = pytest.mark.together("examples")
 
@@ -116,3 +118,20 @@ def test_the_rovers_controller_is_for_an_ardupilot_rover(yard, contributions):
     (program,) = [file.content.decode() for file in files if file.path == "robot_Badger.py"]
     assert 'vehicle="rover"' in program
     assert "TakeOff" not in program
+
+
+def test_the_simulation_logs_each_photo_also_those_by_distance(yard, contributions, tmp_path):
+    write_logs(yard.run, yard.program, tmp_path, yard.place.types, contributions)
+    entries = [json.loads(line) for line in (tmp_path / "Kestrel.blackbox.ndjson").read_text().splitlines()]
+    photos = [each for each in entries if each["kind"] == "photo"]
+    commanded = sum(record.label == "act" and record.robot == "Kestrel" for record in yard.run.records)
+    planned = sum(
+        len(step.stroke.spots)
+        for each in yard.plan.robots
+        for step in each.steps
+        if each.robot == "Kestrel" and isinstance(step, Serve)
+    )
+    assert len(photos) == planned > commanded
+    assert [each["index"] for each in photos] == [*range(len(photos))]
+    times = [each["time"] for each in entries]
+    assert times == sorted(times)
