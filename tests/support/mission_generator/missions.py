@@ -134,7 +134,8 @@ class Maker:
         holes = []
         if self.random.random() < 0.4:
             hole = shapes.ngon((x, y), radius * 0.25, self.random.randint(3, 6), 0.3)
-            holes = [self.make(MISSION, "Ring", points=self.ring(hole))]
+            if shapes.contains(shell, hole):
+                holes = [self.make(MISSION, "Ring", points=self.ring(hole))]
         elif self.random.random() < 0.5:
             self.inside.append((x, y, radius * 0.2))
         grid = self.random.choice([8.0, 12.0, 20.0])

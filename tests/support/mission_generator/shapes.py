@@ -40,6 +40,11 @@ def ngon(centre: tuple[float, float], radius: float, corners: int, turn: float):
     ]
 
 
+def contains(shell, hole):
+    """Return whether a ring lies inside another one."""
+    return shapely.Polygon(shell).contains_properly(shapely.Polygon(hole))
+
+
 def area(shell, holes=()):
     """Return the area of a polygon in square metres."""
     return shapely.Polygon(shell, holes).area
