@@ -31,7 +31,7 @@ from mmrs_core.planning.strokes import (
 from mmrs_core.scene import Position, Stroke, Work
 from mmrs_core.scene.timing import MoveSeconds
 
-_PORTIONS_PER_ROBOT = 50
+_PORTIONS_PER_ROBOT = 100
 """Portions that a robot's share is made of, if all capable robots share alike: how finely it is balanced."""
 
 _PORTIONS_PER_CHARGE = 10

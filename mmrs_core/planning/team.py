@@ -32,7 +32,7 @@ from mmrs_core.planning.turns import JobResult
 from mmrs_core.scene import Robot, Scene, SharedWorks, Task, Work
 from mmrs_runtime.policies import RETURN
 
-_PORTIONS_PER_ROBOT = 60
+_PORTIONS_PER_ROBOT = 120
 """Portions of a robot's part of the whole mission that are small enough to balance it."""
 
 _LOW = "BATTERY_LOW"
