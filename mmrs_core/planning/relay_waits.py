@@ -103,7 +103,7 @@ class Joining:
         apart: Plan | None = None
         with suppress(TooNearError):
             apart = separated(team, soonest)
-        told = signalled(team, soonest, inf if apart is None else apart.makespan)
+        told = signalled(team, soonest, inf if apart is None else apart.makespan, higher=False)
         found = apart if told is None else told
         return found or separated(team, retimed(self._scene, whole, self._steps(team, needs, in_turns=True)))
 

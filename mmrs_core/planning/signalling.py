@@ -49,7 +49,7 @@ _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
 
 
-def signalled(team: Team, plan: Plan, most: float = inf) -> Plan | None:
+def signalled(team: Team, plan: Plan, most: float = inf, *, higher: bool = True) -> Plan | None:
     """Return the plan in which robots go at levels or wait so that all keep apart; None if none is found.
 
     Of the two robots that come too near first, that one does with which the mission ends sooner: it waits
@@ -59,16 +59,17 @@ def signalled(team: Team, plan: Plan, most: float = inf) -> Plan | None:
         team: of the scene, with a minimum separation.
         plan: of the team.
         most: seconds that the plan must take less than.
+        higher: whether a robot may fly higher, where no relay that has left could be out of its range.
     """
     best: Plan | None = None
     for cut in (False, True):
         if most > DEAR * plan.makespan:
-            found = _signalled(team, plan, most, cut=cut)
+            found = _signalled(team, plan, most, cut=cut, higher=higher)
             best, most = (best, most) if found is None else (found, found.makespan)
     return best
 
 
-def _signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None:
+def _signalled(team: Team, plan: Plan, most: float, *, cut: bool, higher: bool) -> Plan | None:
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
     traffic = Traffic(team.scene, parts, least, timing=timing, pilots=team.pilots)
@@ -80,7 +81,7 @@ def _signalled(team: Team, plan: Plan, most: float, *, cut: bool) -> Plan | None
         steps = sum(len(each.steps) for each in traffic.plan.robots)
         if steps * len(traffic.conflicts) > left:
             break
-        further = _further(team, traffic, most, cut=cut)
+        further = _further(team, traffic, most, cut=cut, higher=higher)
         if further is None:
             break
         left -= steps
@@ -94,7 +95,7 @@ def _cost(plan: Plan) -> tuple[float, float, float]:
     return round(plan.makespan, 3), round(backs, 3), round(sum(each.busy for each in plan.robots), 3)
 
 
-def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic | None:
+def _further(team: Team, traffic: Traffic, most: float, *, cut: bool, higher: bool) -> Traffic | None:
     """Return what becomes of the traffic if one of the two robots that meet first lets the other go first.
 
     What costs least is tried first, and taken if it keeps times and charges and the two come further; None
@@ -103,7 +104,8 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic
     conflict = traffic.earliest()
     pairs = (conflict.first, conflict.second), (conflict.second, conflict.first)
     before = {pair: _progress(traffic, *pair) for pair in pairs}
-    offers = [(pair, each) for pair in pairs for each in _offers(team, traffic, *pair, cut=cut)]
+    asked = ((pair, _offers(team, traffic, *pair, cut=cut, higher=higher)) for pair in pairs)
+    offers = [(pair, each) for pair, found in asked for each in found]
     waiting: list[tuple[tuple[float, float, float], int, Plan, float]] = []
 
     def ask(number: int, *, may: bool | None) -> None:
@@ -125,11 +127,14 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool) -> Traffic
     return None
 
 
-def _offers(team: Team, traffic: Traffic, early: str, late: str, *, cut: bool) -> Iterator[_Offers]:
+def _offers(
+    team: Team, traffic: Traffic, early: str, late: str, *, cut: bool, higher: bool
+) -> Iterator[_Offers]:
     """Yield how one robot may go above another, or wait for it: by the clock, at home or not, or a signal."""
     met = traffic.met(early, late)
     place = min(step for step, _, _ in met)
-    yield _lifting(team, traffic, late, place)
+    if higher:
+        yield _lifting(team, traffic, late, place)
     for at_home in (False, True):
         waits = traffic.waits(late, at_home=at_home, last=place)
         if waits is not None:
