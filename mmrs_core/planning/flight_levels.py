@@ -24,7 +24,7 @@ from mmrs_core.planning.sweep import Flags, Floats, Indices
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.timeline import Ride
 from mmrs_core.planning.travel import Travel
-from mmrs_core.scene import Launch, Plan, Position, Recover, Step, Transit
+from mmrs_core.scene import Launch, Plan, Position, Recover, Scene, Step, Transit
 
 _Way: TypeAlias = tuple[Step, ...]
 
@@ -78,23 +78,30 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
         if not choice.pairs or choice.pairs > _MOST_PAIRS:
             break
         share, changed = choice.improve(np.random.default_rng(turn), share, most / plan.makespan)
-        steps = {name: tuple(step for leg in mine for step in leg.way) for name, mine in legs.items()}
-        made = retimed(team.scene, plan, steps)
+        made = _made(team.scene, plan, legs)
         overdrawn = planned.overdrawn_in(made)
-        grounded |= overdrawn
-        for leg in (leg for name in overdrawn for leg in legs[name]):
-            leg.chosen, leg.ways = 0, leg.ways[:1]
         if overdrawn:
-            continue
-        if broken_times(team, {name: (begin, made.ends[name]) for name, begin in made.begins.items()}):
+            grounded |= overdrawn
+            for leg in (leg for name in overdrawn for leg in legs[name]):
+                leg.chosen, leg.ways = 0, leg.ways[:1]
+            made = _made(team.scene, plan, legs)
+        spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
+        if planned.overdrawn_in(made) or broken_times(team, spans):
             break
         traffic = planned.with_plan(made)
         better = min(best, traffic, key=lambda each: (len(each.conflicts), each.cost))
         vain = better is best and not any(len(leg.ways) > 1 for leg in closed)
         best = better
-        if not traffic.conflicts or not changed or vain:
+        if not traffic.conflicts or not (changed or overdrawn) or vain:
             break
     return best
+
+
+def _made(scene: Scene, plan: Plan, legs: Mapping[str, Sequence[_Leg]]) -> Plan:
+    """Return the plan with the ways that are chosen."""
+    return retimed(
+        scene, plan, {name: tuple(step for leg in mine for step in leg.way) for name, mine in legs.items()}
+    )
 
 
 @dataclass(slots=True)

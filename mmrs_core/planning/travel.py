@@ -473,20 +473,21 @@ class Travel:
     ) -> Iterator[tuple[Position, ...]]:
         """Yield paths between two places that lead above both; none where they are blocked or not asked for.
 
-        One leads up, along a level and down; the others up to a peak, and down from there, on a slant.
+        One leads up, along a level and down; the others up to a peak, and down from there, on a slant: these
+        only where no transit altitude is asked for.
 
         Args:
             start, goal: of the paths.
-            higher: metres above the higher one of both.
+            higher: metres above the higher one of both, and above the transit altitude.
             peaks: shares of the straight line.
         """
-        level = max(start[2], goal[2]) + higher
+        level = max(start[2], goal[2], -inf if self._altitude is None else self._altitude) + higher
         if not self._flies_at(level) or start[:2] == goal[:2]:
             return
         raised = self._raised(start, goal, level)
         if raised is not None:
             yield raised
-        for share in peaks:
+        for share in peaks if self._altitude is None else ():
             east, north = (a + share * (b - a) for a, b in zip(start[:2], goal[:2], strict=True))
             with suppress(UnreachableError):
                 up = self.space.route(start, (east, north, level))
@@ -495,7 +496,9 @@ class Travel:
     def from_above(
         self, height: float, other: Position, corridors: Corridors
     ) -> Iterator[tuple[Position, ...]]:
-        """Yield paths from a height above home to a place, or back from there: on a slant, and level.
+        """Yield paths from a height above home to a place, or back from there: level, and on a slant.
+
+        There is no slant where a transit altitude is asked for.
 
         Args:
             height: of launch or recovery.
@@ -506,8 +509,9 @@ class Travel:
         if reason or not self._flies_at(height) or above[:2] == other[:2]:
             return
         start, goal = (above, other) if corridors is self.entries else (other, above)
-        with suppress(UnreachableError):
-            yield self.space.route(start, goal)
+        if self._altitude is None:
+            with suppress(UnreachableError):
+                yield self.space.route(start, goal)
         raised = self._raised(start, goal, height)
         if raised is not None:
             yield raised

@@ -1,6 +1,7 @@
 """Robots that fly keep apart at other levels on single legs, and exchange tours where they cannot pass."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from plain_scenes import robot, scene, visit, with_kinematics
@@ -109,3 +110,11 @@ def test_robots_that_do_not_fly_have_no_levels():
 def test_levels_end_at_the_ceiling(ceiling):
     found, _ = whole_and_alone(crossed(fleet(beside(3), ceiling=ceiling)))
     assert max(place[2] for routes in legs(found).values() for route in routes for place in route) <= ceiling
+
+
+@pytest.mark.parametrize("altitude", [50.0, 60.0])
+def test_no_level_is_below_the_transit_altitude(altitude):
+    found, alone = whole_and_alone(replace(crossed(fleet(beside(4))), transit_altitude=altitude))
+    assert found.makespan > alone.makespan
+    for one, two in (leg for routes in legs(found).values() for route in routes for leg in pairwise(route)):
+        assert one[:2] == two[:2] or min(one[2], two[2]) >= altitude
