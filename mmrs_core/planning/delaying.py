@@ -84,9 +84,9 @@ def _awaited(step: Step) -> tuple[str, ...]:
 
 
 def _at(step: Step, now: float, given: dict[str, float]) -> Step:
-    """Return a step that begins now."""
+    """Return a step that begins now; a wait by the clock keeps its length, at least, and ends no earlier."""
     if isinstance(step, Await):
-        until = None if step.until is None else now + max(0.0, step.until - step.begin)
+        until = None if step.until is None else max(step.until, now + max(0.0, step.until - step.begin))
         end = max([now if until is None else until, *(given[each] for each in step.signals)])
         return replace(step, begin=now, end=end, until=until)
     if isinstance(step, Signal):

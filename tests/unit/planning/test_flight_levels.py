@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from plain_scenes import robot, scene, visit, with_kinematics
+from plain_scenes import box, robot, scene, visit, with_kinematics
 from plan_replay import complaints
 
 from mmrs_core.planning.assembly import planned
@@ -16,7 +16,7 @@ from mmrs_core.planning.planner import plan
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.separation import distance_to_keep, first_conflict
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Transit
+from mmrs_core.scene import Serve, Transit
 from mmrs_runtime.timing import LegTiming
 
 FIELD = [
@@ -118,3 +118,19 @@ def test_no_level_is_below_the_transit_altitude(altitude):
     assert found.makespan > alone.makespan
     for one, two in (leg for routes in legs(found).values() for route in routes for leg in pairwise(route)):
         assert one[:2] == two[:2] or min(one[2], two[2]) >= altitude
+
+
+def test_a_drone_that_is_sooner_at_a_level_still_begins_no_earlier_than_its_earliest_start():
+    """Over the wall it is quicker when it launches higher and flies down on a slant."""
+    team = [*fleet([(0.0, 0.0)]), *fleet([(-50.0, 0.0)], ceiling=20.0)]
+    team[1] = replace(team[1], name="r1")
+    wall = box("wall", 195.0, -200.0, 205.0, 200.0, high=26.0)
+    lane = ((100.0, 60.0, 20.0), (100.0, -60.0, 20.0))
+    works = {"t0": {"r0": visit((400.0, 0.0, 20.0))}, "t1": {"r1": visit(*lane * 4)}}
+    whole = scene(team, works, minimum_separation=11.0, areas=(wall,))
+    tasks = tuple(replace(each, earliest=90.0) if each.name == "t0" else each for each in whole.tasks)
+    whole = replace(whole, tasks=tasks)
+    found, alone = whole_and_alone(whole)
+    assert legs(found)["r0"][0] != legs(alone)["r0"][0]
+    place = next(i for i, step in enumerate(found.robots[0].steps) if isinstance(step, Serve))
+    assert Team(whole).timelines(hasty=False).of(found)["r0"].moments[place][0] >= 90.0
