@@ -19,7 +19,7 @@ import numpy as np
 from mmrs_core.planning.delaying import retimed
 from mmrs_core.planning.proximity import joined, pieces_of
 from mmrs_core.planning.search import broken_times
-from mmrs_core.planning.separation import Traffic, distance_to_keep, recharges
+from mmrs_core.planning.separation import Traffic, distance_to_keep, levels_above, recharges
 from mmrs_core.planning.sweep import Flags, Floats, Indices
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.timeline import Ride
@@ -27,9 +27,6 @@ from mmrs_core.planning.travel import Travel
 from mmrs_core.scene import Launch, Plan, Position, Recover, Scene, Step, Transit
 
 _Way: TypeAlias = tuple[Step, ...]
-
-_LEVELS = 8
-"""Levels at most, each higher by the distance to keep, that are tried for a leg."""
 
 _SLANTED_LEVELS = 4
 _PEAKS = (0.25, 0.5, 0.75)
@@ -70,10 +67,10 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
     legs = {each.robot: list(_legs(team, each.robot, each.steps)) for each in plan.robots}
     best, grounded, share = planned, set[str](), 1.0
     for turn in range(_ROUNDS):
-        closed = [leg for leg in _met(traffic, legs) if len(leg.ways) == 1 and leg.robot not in grounded]
+        met = dict.fromkeys(_met(traffic, legs))
+        closed = [leg for leg in met if len(leg.ways) == 1 and leg.robot not in grounded]
         for leg in closed:
-            if len(leg.ways) == 1:
-                leg.ways += _higher(team.pilots[leg.robot].travel, leg.ways[0], least + 0.1)
+            leg.ways += _higher(team.pilots[leg.robot].travel, leg.ways[0], least)
         choice = _Choice(traffic, plan, legs)
         if not choice.pairs or choice.pairs > _MOST_PAIRS:
             break
@@ -104,7 +101,7 @@ def _made(scene: Scene, plan: Plan, legs: Mapping[str, Sequence[_Leg]]) -> Plan:
     )
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Leg:
     """Steps of a robot that are done in one of several ways.
 
@@ -151,23 +148,23 @@ def _met(traffic: Traffic, legs: Mapping[str, Sequence[_Leg]]) -> Iterator[_Leg]
 
 
 def _higher(travel: Travel, own: _Way, least: float) -> Iterator[_Way]:
-    """Yield other ways for the steps of a leg, higher by the distance to keep and multiples of it."""
-    for number in range(1, _LEVELS + 1):
+    """Yield other ways for the steps of a leg, higher so as to keep a distance."""
+    for number, higher in enumerate(levels_above(least)):
         match own:
             case (Launch() as launch, Transit() as out):
-                height = launch.up + number * least
+                height = launch.up + higher
                 up = launch.begin + travel.kinematics.launching(height - launch.at[2])
                 for route in travel.from_above(height, out.route[-1], travel.entries):
                     yield replace(launch, end=up, up=height), _along(travel, replace(out, begin=up), route)
             case (Transit() as back, Recover() as recover):
-                height = recover.at[2] + number * least
+                height = recover.at[2] + higher
                 down = travel.kinematics.landing(height - recover.up)
                 for route in travel.from_above(height, back.route[0], travel.exits):
                     there = _along(travel, back, route)
                     yield there, replace(recover, begin=there.end, end=there.end + down, at=route[-1])
             case (Transit() as step,):
-                peaks = _PEAKS if number <= _SLANTED_LEVELS else ()
-                for route in travel.above(step.route[0], step.route[-1], number * least, peaks):
+                peaks = _PEAKS if number < _SLANTED_LEVELS else ()
+                for route in travel.above(step.route[0], step.route[-1], higher, peaks):
                     yield (_along(travel, step, route),)
 
 

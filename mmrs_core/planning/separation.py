@@ -47,6 +47,12 @@ _ROUNDS = 8
 _ORDERS = 16
 """Orders at most that are tried to find who starts later."""
 
+_LEVELS = 8
+"""Levels at most that are tried for a leg."""
+
+_ABOVE = 0.1
+"""Metres by which levels are further apart than robots have to be."""
+
 
 class TooNearError(InfeasibleError):
     """Robots cannot be kept apart.
@@ -484,6 +490,11 @@ def _words(conflict: Conflict, least: float, homes: Mapping[str, Position]) -> s
     )
 
 
+def levels_above(least: float) -> Iterator[float]:
+    """Yield by how many metres a robot may fly higher on a leg so as to keep a distance."""
+    yield from (number * (least + _ABOVE) for number in range(1, _LEVELS + 1))
+
+
 def stacked_altitudes(scene: Scene) -> dict[str, float]:
     """Return transit altitudes for robots that launch, one above the other by the minimum separation.
 
@@ -499,7 +510,7 @@ def stacked_altitudes(scene: Scene) -> dict[str, float]:
         return {}
     lowest = max(heights) if scene.transit_altitude is None else scene.transit_altitude
     ceiling = min(robot.kinematics.ceiling for robot in robots if robot.kinematics is not None)
-    levels = max(1, int((ceiling - lowest) / (least + 0.1)) + 1) if ceiling < 1e6 else len(robots)
+    levels = max(1, int((ceiling - lowest) / (least + _ABOVE)) + 1) if ceiling < 1e6 else len(robots)
     if levels < 2:
         return {}
-    return {robot.name: lowest + (i % levels) * (least + 0.1) for i, robot in enumerate(robots)}
+    return {robot.name: lowest + (i % levels) * (least + _ABOVE) for i, robot in enumerate(robots)}

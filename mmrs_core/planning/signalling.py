@@ -19,7 +19,14 @@ from math import dist, inf
 from typing import TypeAlias
 
 from mmrs_core.planning.delaying import delayed, retimed
-from mmrs_core.planning.separation import Traffic, allowed, distance_to_keep, may_wait, recharges
+from mmrs_core.planning.separation import (
+    Traffic,
+    allowed,
+    distance_to_keep,
+    levels_above,
+    may_wait,
+    recharges,
+)
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.planning.travel import kinematics_of
@@ -41,9 +48,6 @@ _PLACES = 6
 
 _SHORT, _LONG = 3.0, 10.0
 """Distances to keep before the end of a long leg at which a robot may wait."""
-
-_LEVELS = 8
-"""Levels at most, each higher by the distance to keep, that are tried for a leg."""
 
 _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
@@ -149,8 +153,8 @@ def _lifting(team: Team, traffic: Traffic, late: str, place: int) -> _Offers:
     if not isinstance(step, Transit):
         return
     start, goal, highest = step.route[0], step.route[-1], max(up for _, _, up in step.route)
-    heights = (number * (traffic.least + 0.1) for number in range(1, _LEVELS + 1))
-    for route in (each for higher in heights for each in travel.above(start, goal, higher)):
+    levels = levels_above(traffic.least)
+    for route in (each for higher in levels for each in travel.above(start, goal, higher)):
         if max(up for _, _, up in route) <= highest:
             continue
         seconds = travel.going(route, step.speed).expected
