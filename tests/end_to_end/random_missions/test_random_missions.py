@@ -3,7 +3,7 @@
 from collections import Counter
 
 import pytest
-from mission_generator.missions import sample
+from mission_generator.missions import DEMANDING, sample
 from mission_generator.outcome import outcome_of
 
 BATCH = 10
@@ -29,7 +29,7 @@ def test_behaviours_pass_and_solvable_missions_are_not_refused(contributions, tm
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("first", range(0, 1000, BATCH))
+@pytest.mark.parametrize("first", [*range(0, 500, BATCH), *range(DEMANDING, DEMANDING + 500, BATCH)])
 def test_a_thousand_behaviours_pass_and_solvable_missions_are_not_refused(first, contributions, tmp_path):
     check(range(first, first + BATCH), contributions, tmp_path)
 
@@ -47,13 +47,15 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
 
 @pytest.mark.parametrize(
     "seed",
-    [101050, 101709, 103012, 104827, 202280],
+    [101050, 101709, 103012, 104827, 202280, 300112, 300229],
     ids=[
         "quicker than it cruises through a corridor",
         "a relay waits for a robot in a corridor",
         "a robot that may be early waits for another",
         "photos of all but a hundred-thousandth",
         "a robot goes home once it needs no relay",
+        "times, a crew and priorities",
+        "a choice",
     ],
 )
 def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):

@@ -12,10 +12,11 @@ from itertools import pairwise
 from math import hypot
 from random import Random
 
-from mission_generator import shapes
+from mission_generator import demands, shapes
+from mission_generator.names import CONTEXT, DRONE, MISSION, ROBOT, SURVEY
 
-MISSION, CONTEXT = "urn:mmrs:mission:1.0", "urn:mmrs:context:1.0"
-ROBOT, DRONE, SURVEY = "urn:mmrs:robot:1.0", "urn:mmrs:multicopter:1.0", "urn:mmrs:survey:1.0"
+DEMANDING = 300_000
+"""The first seed whose mission asks for times, crews, equipment, patterns and more."""
 SIZE = 400.0
 GAP = 30.0
 RADIO, FAR = 300.0, 5000.0
@@ -57,6 +58,7 @@ class Maker:
         self.inside: list[tuple[float, float, float]] = []
         self.work: list[tuple[float, float, float]] = []
         self.relayed = Random(f"relays {seed}").random() < 0.3
+        self.demanding, self.choosing = seed >= DEMANDING, False
         self.hovering = not (self.solvable or self.relayed) and Random(f"hovering {seed}").random() < 0.4
 
     def make(self, namespace: str, metaclass: str, /, **features):
@@ -94,7 +96,9 @@ class Maker:
             reserve=0.2,
             minimumSeparation=self._separation(),
         )
-        return Sample(self.seed, mission, context, types, self._witness())
+        if self.demanding:
+            demands.ask(self, mission, types)
+        return Sample(self.seed, mission, context, types, self.witness())
 
     def _separation(self) -> float | None:
         """Return the metres that robots must keep apart, if any: less than homes are apart."""
@@ -127,7 +131,8 @@ class Maker:
 
     def _task(self, k: int, x: float, y: float, radius: float):
         kind = self.random.choice(["PhotoGridTask"] * 3 + ["GoToTask", "RoadTask", "ObserveTask"])
-        return getattr(self, f"_{kind}")(f"task {k}", x, y, radius)
+        task = getattr(self, f"_{kind}")(f"task {k}", x, y, radius)
+        return (demands.around(self, k, x, y, radius) if self.demanding else None) or task
 
     def _PhotoGridTask(self, name, x, y, radius):  # noqa: N802
         shell = shapes.star(self.random, (x, y), radius, self.random.randint(4, 11))
@@ -331,27 +336,26 @@ class Maker:
                 ),
                 devices=[camera],
                 batteries=[self.make(ROBOT, "Battery", capacity=5000.0, voltage=14.8, rechargeTime=120.0)],
-                movementCapabilities=[
-                    self.make(
-                        ROBOT,
-                        "MovementCapability",
-                        payloadWeight=0.0,
-                        lifetime=self.lifetime,
-                        maxAcceleration=3.0,
-                        maxClimbRate=3.0,
-                        maxDescentRate=2.0,
-                        speed=self.make(ROBOT, "Interval", min=0.0, max=fastest),
-                    )
-                ],
+                movementCapabilities=[self.capability(fastest, payloadWeight=0.0, lifetime=self.lifetime)],
             )
 
-    def _witness(self) -> Witness | None:
-        """Return the witness of a solvable mission: the longest sortie is far out and back, once."""
+    def capability(self, fastest: float, **features):
+        """Return how robots move with a payload of one weight."""
+        limits = {"maxAcceleration": 3.0, "maxClimbRate": 3.0, "maxDescentRate": 2.0}
+        speed = self.make(ROBOT, "Interval", min=0.0, max=fastest)
+        return self.make(ROBOT, "MovementCapability", speed=speed, **limits, **features)
+
+    def witness(self) -> Witness | None:
+        """Return the witness of a solvable mission: the longest sortie is far out and back, once.
+
+        Where it is chosen what to do, far out and back twice: to where that is decided, and to what is done.
+        """
         if not self.solvable:
             return None
         slowest = 0.5 * 10.0
         climbs = 120.0 / 3.0 + 120.0 / 2.0
         way = 2 * DETOUR * (self.far + SIZE * (2 if self.through else 1)) / slowest
+        way *= 2 if self.choosing else 1
         return Witness(way + climbs + 60.0, self.lifetime * 0.8)
 
 

@@ -9,20 +9,26 @@ from math import dist, inf
 import numpy as np
 import shapely
 
-from mission_generator.missions import CONTEXT, DRONE, LARGEST, SURVEY, sample
+from mission_generator.demands import arms
+from mission_generator.keeping import breaches
+from mission_generator.missions import LARGEST, sample
+from mission_generator.names import CONTEXT, DRONE, MISSION, SURVEY
+from mission_generator.photos import GRID_TASK, coverage, odd_photos, photos_of
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
-from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.analysis.times import times_of
 from mmrs_core.behaviour.replay import replay
+from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.errors import InfeasibleError, InvalidModelError
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
 from mmrs_runtime.semantics import Outcome as Outcomes
 
-GRID = 1e-6
 NEAR = 1e-3
 """Metres by which a track may come nearer than allowed: the rounding of coordinates in a file."""
 
+
+POINT_TASK, ORBIT_TASK = (MISSION, "PointTask"), (SURVEY, "OrbitTask")
 
 THERE = 0.1
 """Metres from where it is to stay within which a robot counts as a relay."""
@@ -60,7 +66,7 @@ def outcome_of(seed, contributions, folder, largest=LARGEST):
     started = time.process_time()
     write_project(made, contributions.languages, folder)
     try:
-        _carry_out(folder, contributions, outcome)
+        _carry_out(made, folder, contributions, outcome)
     except InvalidModelError as error:
         outcome.refused = "; ".join(f"{fault.code} {fault.message}" for fault in error.diagnostics)
     except InfeasibleError as error:
@@ -78,7 +84,7 @@ def write_project(made, registry, folder):
         write_model((robot,), folder / "robots" / f"{name}.xmi", registry)
 
 
-def _carry_out(folder, contributions, outcome):
+def _carry_out(made, folder, contributions, outcome):
     models, _ = pipeline.valid_models(folder, contributions)
     scene = pipeline.expand(pipeline.ground(models), contributions)
     plan = pipeline.plan(scene)
@@ -89,21 +95,33 @@ def _carry_out(folder, contributions, outcome):
     place = pipeline.place_of_scene(scene)
     against = pipeline.refusals(pipeline.verify(program, place, contributions), program)
     outcome.complaints += [f"verify: {each.property} {each.status.value}: {each.message}" for each in against]
-    run = pipeline.simulate(program, place, contributions)
-    replayed = replay(program, run.records)
-    outcome.complaints += [f"replay: {complaint}" for complaint in replayed.complaints]
-    if replayed.outcome is not Outcomes.SUCCESS:
-        outcome.complaints.append(f"replay: ends with {replayed.outcome}; {run.ending}")
-    outcome.makespan = run.ending.time
-    outcome.complaints += list(_intrusions(scene, run.tracks))
-    outcome.complaints += list(_silences(scene, run.tracks, program))
-    outcome.complaints += list(_overdrafts(scene, run.tracks))
+    choices = {each.condition for each in arms(made.mission) if each.condition}
+    for holds in (True, False) if choices else (True,):
+        run = pipeline.simulate(program, place, contributions, assume=dict.fromkeys(choices, holds))
+        replayed = replay(program, run.records)
+        outcome.complaints += [f"replay: {complaint}" for complaint in replayed.complaints]
+        if replayed.outcome is not Outcomes.SUCCESS:
+            outcome.complaints.append(f"replay: ends with {replayed.outcome}; {run.ending}")
+        outcome.makespan = max(outcome.makespan, run.ending.time)
+        outcome.complaints += list(_intrusions(scene, run.tracks))
+        outcome.complaints += list(_silences(scene, run.tracks, program))
+        outcome.complaints += list(_overdrafts(scene, run.tracks))
+        outcome.complaints += list(_approaches(scene, run.tracks))
+        outcome.complaints += list(
+            breaches(made, program, run, holds, _earliest(program, place, contributions))
+        )
     outcome.complaints += list(_repetitions(scene, program))
-    outcome.complaints += list(_approaches(scene, run.tracks))
-    outcome.coverage = dict(_coverage(scene, program))
+    outcome.complaints += list(odd_photos(scene, program, outcome.solvable))
+    outcome.coverage = dict(coverage(scene, program))
     for task, share in outcome.coverage.items():
         if share < 0.999:
             outcome.complaints.append(f"coverage of '{task}': {share:.5f}")
+
+
+def _earliest(program, place, contributions):
+    """Return when moves may begin at the earliest, by robot and index."""
+    kinds = {"robot_kinds": contributions.robot_kinds, "move_kinds": contributions.move_kinds}
+    return times_of(CheckInput(program, place.types, environment=place.environment or {}, **kinds)).earliest
 
 
 def _read_again(file, models, contributions, outcome):
@@ -245,104 +263,15 @@ def _repetitions(scene, program):
         sorties[robot.id] = sum(move.is_a((DRONE, "TakeOff")) for move in robot.moves)
         for task in {move.task for move in robot.moves if move.task}:
             robots[task].add(robot.id)
-        for task, at, *leg in _photos(robot):
+        for task, at, *leg in photos_of(robot):
             photos[task].add((*np.round(at, 2), *leg))
     for task in scene.tasks:
         names = robots[task.name]
-        if "point" in task.part.attributes and len(names) != 1:
+        if task.part.is_a(POINT_TASK) and not task.part.is_a(ORBIT_TASK) and len(names) != 1:
             yield f"'{task.name}' is done by {len(names)} robots: {', '.join(sorted(names))}"
-        if "shell" in task.part.attributes:
+        if task.part.is_a(GRID_TASK) and not task.part.attributes["crossHatch"]:
             places = [each[:3] for each in photos[task.name]]
             twice = len(places) - len(set(places))
             cuts = sum(sorties[name] for name in names)
             if twice > cuts:  # where a swath is cut, its last photo is repeated
                 yield f"{twice} photos of '{task.name}' are made twice"
-
-
-def _coverage(scene, program):
-    """Yield each polygon task's name and the share of its target that lies in footprints."""
-    prints = defaultdict(list)
-    robots = defaultdict(set)
-    for robot in program.robots:
-        for task, shape in _footprints(scene, robot):
-            prints[task].append(shape)
-            robots[task].add(robot.id)
-    for task in scene.tasks:
-        if "shell" in task.part.attributes and ("gridResolution" in task.part.attributes):
-            if not robots[task.name]:
-                yield task.name, 0.0
-                continue
-            target = _target(scene, task, robots[task.name])
-            covered = shapely.union_all(prints[task.name], grid_size=GRID)
-            common = shapely.intersection(target, covered, grid_size=GRID)
-            yield task.name, common.area / target.area if target.area else 1.0
-
-
-def _target(scene, task, robots):
-    """Return shell minus holes minus all that is too near to an area at the task's height."""
-    attributes = task.part.attributes
-    shell = [point[:2] for point in attributes["shell"]]
-    holes = [[point[:2] for point in ring.attributes["points"]] for ring in attributes["holes"]]
-    target = shapely.Polygon(shell, holes)
-    own = max(scene.robot(name).clearance for name in robots)
-    for area in scene.kept_from(scene.robot(min(robots))):
-        keep = own + area.safety_distance
-        if area.low - keep < attributes["altitude"] < area.high + keep:
-            target = target.difference(shapely.Polygon(area.shell).buffer(keep, quad_segs=64))
-    return target
-
-
-def _footprints(scene, robot):
-    """Yield the task and the ground rectangle of each photo, laid along the way the robot flies."""
-    for task, at, here, end in _photos(robot):
-        shape = _rectangle(scene.task(task).part.attributes, at, here, end)
-        if shape is not None:
-            yield task, shape
-
-
-def _photos(robot):
-    """Yield the task of each photo, where it is made, and the ends of the leg."""
-    here, every = robot.home, 0.0
-    for move in robot.moves:
-        end = move.target.position if move.target and move.target.position else here
-        photos = [here for action in move.before if _photographs(action)]
-        every = _distance(move.before, every)
-        photos += _each(every, here, end)
-        photos += [end for action in move.after if _photographs(action)]
-        every = _distance(move.after, every)
-        yield from ((move.task, at, here, end) for at in photos)
-        here = end
-
-
-def _photographs(action):
-    return action.is_a((BEHAVIOUR, "DeviceAction")) and action.name in ("TakePicture", "TriggerByDistance")
-
-
-def _distance(actions, before):
-    """Return the metres between photos in passing after some actions; 0 where there are none."""
-    given = [dict(action.parameters)["distance"] for action in actions if action.name == "TriggerByDistance"]
-    return float(given[-1]) if given else before
-
-
-def _each(every, here, end):
-    """Return the places between two others at which a camera is triggered that was so at the first one."""
-    length = np.hypot(*np.subtract(end[:2], here[:2]))
-    count = int(length / every) if every > 0.0 else 0
-    return [np.add(here, np.subtract(end, here) * n * every / length) for n in range(1, count + 1)]
-
-
-def _rectangle(attributes, at, here, end):
-    if "shell" not in attributes:
-        return None
-    grid = attributes.get("gridResolution")
-    width = attributes.get("footprintWidth") or grid
-    length = attributes.get("footprintLength") or grid
-    way = np.array(end[:2]) - np.array(here[:2])
-    norm = np.hypot(*way)
-    along = way / norm if norm > 0 else np.array([1.0, 0.0])
-    across = np.array([-along[1], along[0]])
-    corners = [
-        np.array(at[:2]) + a * along * length / 2 + b * across * width / 2
-        for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    ]
-    return shapely.Polygon(corners)
