@@ -28,10 +28,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Have tests, and the many processes that they start, compile each module once."""
+    if not AT_WORK_WITH_OTHERS:
+        shared.write_to_memory()
+        config.add_cleanup(shared.open_folder())
     if os.environ.pop("PYTHONDONTWRITEBYTECODE", "") and "PYTHONPYCACHEPREFIX" not in os.environ:
         keep_bytecode_elsewhere(config)
-    if not AT_WORK_WITH_OTHERS:
-        config.add_cleanup(shared.open_folder())
     gc.set_threshold(*shared.SELDOM)
     obey_interrupts()
     same_examples.pytest_configure()

@@ -10,8 +10,17 @@ from contextlib import contextmanager
 from pathlib import Path
 
 _VARIABLE = "MMRS_TEST_RUN"
+_MEMORY, _ROOM = Path("/dev/shm"), 2 << 30
 SELDOM = (50_000, 20, 20)
 """New objects after which Python looks for cycles; by default, that is a twentieth of the time of tests."""
+
+
+def write_to_memory() -> None:
+    """Have tests keep their files in memory where it has room: a disk takes ten times as long for each."""
+    if "TMPDIR" not in os.environ and _MEMORY.is_dir():
+        state = os.statvfs(_MEMORY)
+        if state.f_bavail * state.f_frsize > _ROOM and not state.f_flag & (os.ST_NOEXEC | os.ST_RDONLY):
+            os.environ["TMPDIR"] = tempfile.tempdir = str(_MEMORY)
 
 
 def open_folder() -> Callable[[], None]:

@@ -14,7 +14,7 @@ import pytest
 from _pytest.runner import runtestprotocol
 from xdist.scheduler import LoadScopeScheduling
 
-_MARK = re.compile(r'\bmark\.(real_time|together|long)\b(?:\("([^"]+)"\))?')
+_MARK = re.compile(r'mark\.(real_time|together|long)\b(?:\("([^"]+)"\))?')
 _RANKS = {"real_time": 0, "together": 1, "long": 1}
 _WORTH_A_REPORT = 0.01
 """Seconds of a test's setup or teardown from which on ``--durations`` lists it."""
