@@ -81,7 +81,7 @@ def _recorded(found: Distribution) -> Iterator[tuple[str, bytes]]:
     if found.files is None:
         raise MmrsError(f"distribution {found.name}: its installation has no record of its files")
     for file in found.files:
-        made = ".." in file.parts or file.suffix == ".pyc"
+        made = not {"..", "__pycache__"}.isdisjoint(file.parts)
         if not made and not file.parts[0].endswith(".dist-info"):
             yield file.as_posix(), _read(Path(str(found.locate_file(file))), found)
 
@@ -105,7 +105,7 @@ def _in_place(folder: Path, found: Distribution) -> Iterator[tuple[str, bytes]]:
         if not (folder / part).is_dir():
             raise MmrsError(f"distribution {found.name}: {folder / part} is missing")
         for path in (folder / part).rglob("*"):
-            if path.is_file() and path.suffix != ".pyc":
+            if path.is_file() and "__pycache__" not in path.parts:
                 yield f"{inside}/{path.relative_to(folder / part).as_posix()}", _read(path, found)
 
 

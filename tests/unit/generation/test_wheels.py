@@ -77,8 +77,10 @@ def test_a_wheel_of_a_copy_has_the_files_and_metadata_of_the_one_that_was_instal
     assert wheel_of("mmrs-survey") == wheel
 
 
-def test_a_project_is_found_in_a_folder_with_spaces_and_its_source_folder_is_left_out(in_place):
-    in_place()
+def test_a_project_is_found_in_a_folder_with_spaces_and_its_source_folder_and_caches_are_left_out(in_place):
+    cache = in_place() / "src" / "kite" / "__pycache__"
+    cache.mkdir()
+    (cache / "loops.py311.nbi").touch()
     assert held(wheel_of("kite").content) == {"kite/__init__.py": b"STRING = 40.0\n"}
 
 
