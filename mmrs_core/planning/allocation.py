@@ -51,7 +51,7 @@ _MOST_STEPS = 10_000
 _ROUNDS = 2
 
 _ORDERS_PER_STOP = 75
-_MOST_LOOKS = 8_000_000
+_MOST_LOOKS = 16_000_000
 """Orders that are tried at most where jobs wait for others, and pairs of stop and robot in all of them."""
 
 _PIECES_PER_TOUR = 3

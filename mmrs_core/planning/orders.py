@@ -22,8 +22,12 @@ from mmrs_core.planning.order_loops import Line, Waits
 from mmrs_core.planning.ruin import loops_for
 from mmrs_core.planning.ruin_loops import Field
 
-_HOT, _COLD = 0.005, 0.0005
-"""Temperature at the beginning and at the end, as a share of the first makespan."""
+_HOT, _COLD, _LAST = 0.01, 0.0005, 0.00003
+"""Temperature at the beginning, before the last part of a search, and in that part, as a share of the first
+makespan."""
+
+_LAST_PART = 0.25
+"""Part of a search that is spent on the best order near to where it is."""
 
 
 class OrderSearch:
@@ -63,7 +67,8 @@ class OrderSearch:
         """Yield the least makespan so far before each slice of so many steps, see `Search`."""
         for share in shares:
             yield self.makespan
-            heat = _HOT * self._first * (_COLD / _HOT) ** share
+            cooled = share / (1.0 - _LAST_PART)
+            heat = self._first * (_HOT * (_COLD / _HOT) ** cooled if cooled < 1.0 else _LAST)
             self._now, self.makespan = self._loops.anneal(
                 self._field, self._waits, self._line, self.best, self._now, self.makespan, heat, steps
             )
