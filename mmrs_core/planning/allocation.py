@@ -188,6 +188,8 @@ class _Fields:
                 self._part(stop, each.get(kind)) for stop, each in zip(self._stops, able_kinds, strict=True)
             ]
             able = np.array([i for i, each in enumerate(materials) if each is not None], np.int64)
+            if not able.size:
+                continue
             robots = np.array([r for r, each in enumerate(kinds) if each == k], np.int64)
             mine = [self._pilots[r] for r in robots.tolist()]
             legs = _Legs(mine, [each for each in materials if each is not None], bounds)

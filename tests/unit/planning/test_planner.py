@@ -390,6 +390,14 @@ def test_a_robot_without_work_has_a_reason_and_one_with_work_has_none():
     assert "'b': has no work for it" in idle.idle
 
 
+def test_a_robot_that_can_do_none_of_many_tasks_stays_at_home():
+    names = [f"t{k}" for k in range(8)]
+    works = {name: {"r1": visit((100.0 + 10.0 * k, 0.0, 20.0))} for k, name in enumerate(names)}
+    low = with_kinematics(robot("low", (15.0, 0.0, 0.0)), cruise=3.0)
+    found = sound(scene((robot("r1"), low), works))
+    assert [bool(each.steps) for each in found.robots] == [True, False]
+
+
 def test_a_robot_without_work_names_the_separation_only_where_it_is_known_to_be_idle_for_it():
     team = (robot("r1"), robot("r2", (32.0, 0.0, 0.0)))
     places = {"a": (50.0, 60.0, 20.0), "b": (70.0, 60.0, 20.0), "c": (60.0, 70.0, 20.0)}
