@@ -223,11 +223,11 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
         bins, width = _BINS, max(_angle(base_x, base_y, to_x, to_y) / _BINS, 1e-6)
         one, two = sqrt(base_x * base_x + base_y * base_y), sqrt(to_x * to_x + to_y * to_y)
         right_x, right_y, left_x, left_y = base_x / one, base_y / one, to_x / two, to_y / two
-    blocked = memory.blocked
+    blocked, blocks, met = memory.blocked, memory.blocks, memory.met
     for i in range(bins):
         blocked[i] = inf
-    memory.met[-1] += 1
-    look, areas, seen = memory.met[-1], 0, 0
+    met[-1] += 1
+    look, areas, seen = met[-1], 0, 0
     column, row = floor((x - c.origin_x) / c.cell), floor((y - c.origin_y) / c.cell)
     ring = max(0, -column, column - c.columns + 1, -row, row - c.rows + 1)
     last = max(column, c.columns - 1 - column, row, c.rows - 1 - row)
@@ -244,9 +244,9 @@ def _look(c: Columns, memory: Memory, x: float, y: float, node: int, spare: floa
                 cell = j * c.columns + i
                 for item in range(c.cells_from[cell], c.cells_from[cell + 1]):
                     area = c.in_cells[item]
-                    if memory.met[area] == look or not memory.blocks[area]:
+                    if met[area] == look or not blocks[area]:
                         continue
-                    memory.met[area] = look
+                    met[area] = look
                     to_x = (c.west[area] + c.east[area]) / 2.0 - x
                     to_y = (c.south[area] + c.north[area]) / 2.0 - y
                     wide, high = c.east[area] - c.west[area], c.north[area] - c.south[area]
@@ -326,35 +326,44 @@ def _meet(
     inside = c.west[area] <= x <= c.east[area] and c.south[area] <= y <= c.north[area]
     in_rim = inside and node < 0
     low_x = low_y = high_x = high_y = furthest = 0.0
+    corner_x, corner_y, before_x, before_y, after_x, after_y = c[:6]
+    own_before_x, own_before_y, own_after_x, own_after_y = (
+        before_x[own],
+        before_y[own],
+        after_x[own],
+        after_y[own],
+    )
+    look_node, look_metres = memory.look_node, memory.look_metres
     for k in range(c.corners_from[area], c.corners_from[area + 1]):
-        to_x, to_y = c.x[k] - x, c.y[k] - y
+        to_x, to_y = corner_x[k] - x, corner_y[k] - y
         squared = to_x * to_x + to_y * to_y
-        furthest = max(furthest, squared)
+        if squared > furthest:
+            furthest = squared
         if low_x * to_y - low_y * to_x <= 0.0:
             low_x, low_y = to_x, to_y
         if high_x * to_y - high_y * to_x >= 0.0:
             high_x, high_y = to_x, to_y
-        one = to_x * c.before_y[k] - to_y * c.before_x[k]
-        two = to_x * c.after_y[k] - to_y * c.after_x[k]
-        apart = one * two < 0.0 and min(abs(one), abs(two)) > _TINY * sqrt(squared)
-        if squared <= 1e-18 or (apart and not in_rim):
-            continue
+        one = to_x * before_y[k] - to_y * before_x[k]
+        two = to_x * after_y[k] - to_y * after_x[k]
         metres = sqrt(squared)
         tiny = _TINY * metres
+        apart = (one > tiny and two < -tiny) or (one < -tiny and two > tiny)
+        if squared <= 1e-18 or (apart and not in_rim):
+            continue
         if node >= 0:
-            from_one = to_x * c.before_y[own] - to_y * c.before_x[own]
-            from_two = to_x * c.after_y[own] - to_y * c.after_x[own]
             if base_x * to_x + base_y * to_y <= 0.0:
                 continue
-            if side == LEFT and min(from_one, from_two) < -tiny:
+            from_one = to_x * own_before_y - to_y * own_before_x
+            from_two = to_x * own_after_y - to_y * own_after_x
+            if side == LEFT and (from_one < -tiny or from_two < -tiny):
                 continue
-            if side == RIGHT and max(from_one, from_two) > tiny:
+            if side == RIGHT and (from_one > tiny or from_two > tiny):
                 continue
-        if in_rim or min(one, two) >= -tiny:
-            memory.look_node[seen], memory.look_metres[seen] = 2 * k + LEFT, metres
+        if in_rim or (one >= -tiny and two >= -tiny):
+            look_node[seen], look_metres[seen] = 2 * k + LEFT, metres
             seen += 1
-        if in_rim or max(one, two) <= tiny:
-            memory.look_node[seen], memory.look_metres[seen] = 2 * k + RIGHT, metres
+        if in_rim or (one <= tiny and two <= tiny):
+            look_node[seen], look_metres[seen] = 2 * k + RIGHT, metres
             seen += 1
     if inside:
         return seen
@@ -398,17 +407,18 @@ def _crosses(c: Columns, area: int, x: float, y: float, to_x: float, to_y: float
     """
     along_x, along_y = to_x - x, to_y - y
     meets = begins = ends = False
+    x1, y1, x2, y2 = c.x1, c.y1, c.x2, c.y2
     first, last = c.edges_from[area], c.edges_from[area + 1]
     squared = along_x * along_x + along_y * along_y
     slack = 1e-6 / sqrt(squared) if squared > 1e-12 else 0.0
     for i in range(first, last):
-        one = along_x * (c.y1[i] - y) - along_y * (c.x1[i] - x)
-        two = along_x * (c.y2[i] - y) - along_y * (c.x2[i] - x)
+        one = along_x * (y1[i] - y) - along_y * (x1[i] - x)
+        two = along_x * (y2[i] - y) - along_y * (x2[i] - x)
         if (one > 0.0) != (two > 0.0):
             share = one / (one - two)
             at = (
-                (c.x1[i] + share * (c.x2[i] - c.x1[i]) - x) * along_x
-                + (c.y1[i] + share * (c.y2[i] - c.y1[i]) - y) * along_y
+                (x1[i] + share * (x2[i] - x1[i]) - x) * along_x
+                + (y1[i] + share * (y2[i] - y1[i]) - y) * along_y
             ) / squared
             meets = meets or 0.0 <= at <= 1.0
             begins = begins != (at < 0.0)
