@@ -9,6 +9,7 @@ from itertools import accumulate, pairwise
 from math import ceil, floor, inf, sqrt
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from mmrs_core.errors import UnreachableError
@@ -149,6 +150,21 @@ class Material:
             parts = (stroke for portion in self.portions[begin : end + 1] for stroke in portion)
             self._strokes[begin, end] = joined(parts)
         return self._strokes[begin, end]
+
+    def near(self, metres: float) -> list[list[int]]:
+        """Return, by portion, itself and those that lie within some metres of it, heights aside."""
+        if metres not in self._near:
+            # a line of one point is none to shapely
+            lines = [[(*each.points, each.points[-1]) for each in portion] for portion in self.portions]
+            shapes = [shapely.MultiLineString([[at[:2] for at in line] for line in each]) for each in lines]
+            found = self._near[metres] = [[] for _ in shapes]
+            for one, two in shapely.STRtree(shapes).query(shapes, "dwithin", metres).T.tolist():
+                found[one].append(two)
+        return self._near[metres]
+
+    @cached_property
+    def _near(self) -> dict[float, list[list[int]]]:
+        return {}
 
     @cached_property
     def _strokes(self) -> dict[tuple[int, int], tuple[Stroke, ...]]:

@@ -14,6 +14,7 @@ from typing import TypeVar
 from mmrs_core.planning.choices import carry_out
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.mixing import MixedFilling, mixes
+from mmrs_core.planning.patches import in_fewer_patches
 from mmrs_core.planning.sharing import Filling, ShareCandidate, Sharing, earliest, fillings
 from mmrs_core.planning.states import Bounds, Ready, State
 from mmrs_core.planning.team import Team
@@ -210,16 +211,31 @@ class _Scheduling:
         return home and not any(each.shares(self._limit) for each in fillings)
 
     def _chosen_or_shared(self, job: Job, fillings: Iterable[Filling]) -> JobResult | None:
-        return self._chosen(job) if job.choice is not None else self._shared(fillings)
+        return self._chosen(job) if job.choice is not None else self._shared(job, fillings)
 
-    def _shared(self, fillings: Iterable[Filling]) -> JobResult | None:
+    def _shared(self, job: Job, ways: Iterable[Filling]) -> JobResult | None:
         if self._decisions.in_turns:
-            tried = [self._in_turns(found) for each in fillings if (found := earliest(each))]
+            tried = [self._in_turns(found) for each in ways if (found := earliest(each))]
             return min((each for each in tried if each is not None), key=lambda each: each.back, default=None)
         best: Sharing | None = None
-        for each in fillings:
+        for each in ways:
             best = earliest(each, inf if best is None else best.back - 1e-6) or best
-        return None if best is None else self._at_once(best)
+        if best is None:
+            return None
+        return self._at_once(self._in_patches(job, best) if self._record else best)
+
+    def _in_patches(self, job: Job, sharing: Sharing) -> Sharing:
+        """Return the same robots' shares in as few patches as may be where that takes little longer."""
+        task, names = self._tasks[job.name], {each.candidate.pilot.robot.name for each in sharing.shares}
+        group = next((each for each in self._team.groups[job.name] if names <= set(each)), ())
+        work = self._team.scene.works[job.name, group[0]] if group else None
+        timed = any(each.deadline is not None or each.longest is not None for each in self._tasks.values())
+        if timed or work is None or work.coverage is None or work.ordered or len(names) == 1:
+            return sharing
+        allowed, everyone = [*filter(names.__contains__, group)], task.wanted is not None
+        laid = (self._candidates(job, task, allowed, by_rows=by_rows) for by_rows in (False, True))
+        ways = (each for some in laid if some for each in fillings(some, everyone=everyone))
+        return in_fewer_patches(sharing, ways, work.coverage.width)
 
     def _at_once(self, sharing: Sharing) -> JobResult:
         after = {share.candidate.pilot.robot.name: share.run.state(share.end) for share in sharing.shares}
@@ -294,21 +310,25 @@ class _Scheduling:
                 for ahead in (True, False):
                     yield MixedFilling(mixture, some_sorts, ahead=ahead, everyone=everyone)
 
-    def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[ShareCandidate]:
+    def _candidates(
+        self, job: Job, task: Task, group: Sequence[str], *, by_rows: bool = False
+    ) -> list[ShareCandidate]:
         """Return the allowed robots of a group, those first that are first back from the first portion."""
         allowed = self._allowed(job)
         if allowed is not self._team.pilots:
             group = sorted((name for name in allowed if name in group), key=group.index)
         found = []
         for name in group:
-            forwards = self._team.forwards(job.name, name)
+            forwards = self._team.forwards(job.name, name, by_rows=by_rows)
             if forwards is None:
                 continue
             pilot, state = self._team.pilots[name], self._states[name]
             ready = self._ready(job, name, task.earliest)
-            known = self._team.candidates.get(key := (job.name, name, id(state), ready, self._record))
+            known = self._team.candidates.get(
+                key := (job.name, name, id(state), ready, self._record, by_rows)
+            )
             if known is None:
-                backwards = partial(self._team.backwards, job.name, name)
+                backwards = partial(self._team.backwards, job.name, name, by_rows=by_rows)
                 known = ShareCandidate(pilot, state, ready, forwards, backwards, self._record)
                 if len(self._team.candidates) >= _MOST_CANDIDATES:
                     self._team.candidates.clear()

@@ -123,8 +123,13 @@ def earliest(filling: Filling, limit: float = inf) -> Sharing | None:
             found, back = better, _back(better)
         else:
             low = middle
-    shares = tuple(share.candidate.turned(share) for share in found)
-    return Sharing(shares, _back(shares))
+    return each_turned(found)
+
+
+def each_turned(shares: Sequence[Share]) -> Sharing:
+    """Return shares, each in the direction in which its robot is back sooner."""
+    turned = tuple(share.candidate.turned(share) for share in shares)
+    return Sharing(turned, _back(turned))
 
 
 def _back(shares: Sequence[Share]) -> float:

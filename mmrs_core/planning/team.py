@@ -21,6 +21,7 @@ from mmrs_core.planning.materials import (
     shortages,
 )
 from mmrs_core.planning.mixing import Mixture, WorkGroup
+from mmrs_core.planning.patches import in_rows
 from mmrs_core.planning.remainders import comparable
 from mmrs_core.planning.sharing import ShareCandidate
 from mmrs_core.planning.sorties import Pilot
@@ -39,6 +40,9 @@ _LOW = "BATTERY_LOW"
 
 Direction = bool
 """Whether a material is laid out backwards."""
+
+ByRows = bool
+"""Whether it is laid out row by row."""
 
 
 class Team:
@@ -119,8 +123,8 @@ class Team:
         self.tasks = {task.name: task for task in scene.tasks}
         self._crews: dict[tuple[str, ...], tuple[tuple[str, ...], dict[str, str]]] = {}
         self._able_robots: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {}
-        self._layouts: dict[tuple[str, str], Layout] = {}
-        self._materials: dict[tuple[str, str, Direction], Material | None] = {}
+        self._laid: dict[tuple[str, str, ByRows], tuple[Work, Layout] | None] = {}
+        self._materials: dict[tuple[str, str, ByRows, Direction], Material | None] = {}
         self.groups: dict[str, tuple[tuple[str, ...], ...]] = {}
         self.mixtures: dict[str, tuple[Mixture, ...]] = {}
         for task in scene.tasks:
@@ -185,9 +189,9 @@ class Team:
         """Lay the work out for each robot of a group; return those that can follow it."""
         layout, able = self._layout(work, group, robots), group
         for kind, names in self._of_kinds(group).items():
-            self._layouts[task, kind] = layout
+            self._laid[task, kind, False] = work, layout
             try:
-                self._materials[task, kind, False] = lay_out(task, work, layout, self.pilots[names[0]])
+                self._materials[task, kind, False, False] = lay_out(task, work, layout, self.pilots[names[0]])
             except UnreachableError as error:
                 self._refusals |= {(task, name): str(error) for name in names}
                 able = tuple(name for name in able if name not in names)
@@ -231,27 +235,36 @@ class Team:
         robots = {robot.name: robot for robot in self.scene.robots}
         return self._timelines.setdefault(hasty, Timelines(robots, hasty=hasty))
 
-    def forwards(self, task: str, robot: str) -> Material | None:
-        """Return the material of a task for a robot; None if it cannot do the task."""
+    def forwards(self, task: str, robot: str, *, by_rows: ByRows = False) -> Material | None:
+        """Return the material of a task for a robot; None if it cannot do the task, or not that way."""
         if (task, robot) in self._refusals or (task, robot) not in self.scene.works:
             return None
-        return self._materials.get((task, self.kinds[robot], False))
+        return self._material(task, robot, by_rows, backwards=False)
 
-    def backwards(self, task: str, robot: str) -> Material | None:
+    def backwards(self, task: str, robot: str, *, by_rows: ByRows = False) -> Material | None:
         """Return the material in the other direction; None if it has only one."""
-        kind = self.kinds[robot]
-        key = (task, kind, True)
+        return self._material(task, robot, by_rows, backwards=True)
+
+    def _material(self, task: str, robot: str, by_rows: ByRows, *, backwards: Direction) -> Material | None:
+        key = (task, self.kinds[robot], by_rows, backwards)
         if key not in self._materials:
-            layout = self._layouts[task, kind]
-            made = None
-            if layout.can_turn:
-                work = self.scene.works[task, robot]
+            laid, made = self._laid_out(task, robot, by_rows), None
+            if laid is not None and (laid[1].can_turn or not backwards):
                 try:
-                    made = lay_out(task, work, layout, self.pilots[robot], backwards=True)
+                    made = lay_out(task, *laid, self.pilots[robot], backwards=backwards)
                 except UnreachableError:
                     made = None
             self._materials[key] = made
         return self._materials[key]
+
+    def _laid_out(self, task: str, robot: str, by_rows: ByRows) -> tuple[Work, Layout] | None:
+        key = (task, self.kinds[robot], by_rows)
+        if key not in self._laid:
+            work = in_rows(self.scene.works[task, robot])
+            group = next(each for each in self.groups[task] if robot in each)
+            laid = None if work is None else (work, self._layout(work, group, self.sharers(task)))
+            self._laid[key] = laid
+        return self._laid[key]
 
     def able(self, task: str) -> tuple[str, ...]:
         """Return all robots that can do a task, in the scene's order."""
