@@ -3,9 +3,14 @@
 from collections import defaultdict
 from math import inf
 
+import numpy as np
+
 from mission_generator.demands import ASIDE, able, arms
 
 NEAR = 1e-3
+
+ROUNDING = 0.1
+"""Metres by which a robot on two legs at once, as at corners, may seem to be ahead."""
 
 
 def breaches(made, program, run, holds, earliest):
@@ -36,6 +41,7 @@ def breaches(made, program, run, holds, earliest):
     yield from _crews(made, tasks, crews)
     yield from _times(tasks, whole, soonest, before)
     yield from _priorities(tasks, spans, whole, before)
+    yield from _hastes(made, run.tracks)
 
 
 def _spans(program, run):
@@ -106,3 +112,15 @@ def _priorities(tasks, spans, whole, before):
                 if task.priority > tasks[name].priority and ready <= free:
                     yield f"'{robot}' does '{name}' before '{later}', which has priority"
             free = end
+
+
+def _hastes(made, tracks):
+    """Yield robots that are quicker than those of their type with so much payload can be."""
+    for robot in (each for each in made.mission.team.robots if each.name in tracks):
+        able = [c for c in made.robots[robot.type].movementCapabilities if c.payloadWeight >= robot.payload]
+        fastest = min(able, key=lambda each: each.payloadWeight).speed.max
+        rows = np.array([(each.time, each.east, each.north) for each in tracks[robot.name]])
+        seconds, *ways = np.diff(rows, axis=0).T
+        over = (np.hypot(*ways) - fastest * seconds).max(initial=0.0)
+        if over > ROUNDING:
+            yield f"'{robot.name}' is {over:.3f} m ahead of its largest speed, {fastest:g} m/s"

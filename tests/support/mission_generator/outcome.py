@@ -1,7 +1,7 @@
 """What the whole chain makes of a random mission, judged by code that shares nothing with it."""
 
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import dist, inf
@@ -257,21 +257,22 @@ def _parts_between(points, low, high):
 
 
 def _repetitions(scene, program):
-    """Yield what is done twice: a photo of a task at one place, or a task at a point by several robots."""
-    robots, photos, sorties = defaultdict(set), defaultdict(set), {}
+    """Yield what is done twice: a photo of a task at one place, or a task at a point in several sorties."""
+    parts, photos, sorties = defaultdict(set), defaultdict(set), Counter()
     for robot in program.robots:
-        sorties[robot.id] = sum(move.is_a((DRONE, "TakeOff")) for move in robot.moves)
-        for task in {move.task for move in robot.moves if move.task}:
-            robots[task].add(robot.id)
+        for move in robot.moves:
+            sorties[robot.id] += move.is_a((DRONE, "TakeOff"))
+            if move.works:
+                parts[move.task].add((robot.id, sorties[robot.id]))
         for task, at, *leg in photos_of(robot):
             photos[task].add((*np.round(at, 2), *leg))
     for task in scene.tasks:
-        names = robots[task.name]
-        if task.part.is_a(POINT_TASK) and not task.part.is_a(ORBIT_TASK) and len(names) != 1:
-            yield f"'{task.name}' is done by {len(names)} robots: {', '.join(sorted(names))}"
+        own = sorted(parts[task.name])
+        if task.part.is_a(POINT_TASK) and not task.part.is_a(ORBIT_TASK) and len(own) != 1:
+            yield f"'{task.name}' is done in {len(own)} sorties: {own}"
         if task.part.is_a(GRID_TASK) and not task.part.attributes["crossHatch"]:
             places = [each[:3] for each in photos[task.name]]
             twice = len(places) - len(set(places))
-            cuts = sum(sorties[name] for name in names)
+            cuts = sum(sorties[name] for name in {robot for robot, _ in own})
             if twice > cuts:  # where a swath is cut, its last photo is repeated
                 yield f"{twice} photos of '{task.name}' are made twice"
