@@ -42,8 +42,8 @@ def _covered(prints, twice):
     still = prints.pop(None, [])
     layers = {angle: shapely.union_all([*each, *still], grid_size=GRID) for angle, each in prints.items()}
     across = [(a, b) for a, b in combinations(layers, 2) if abs(abs(a - b) - 90) <= 1]
-    both = [shapely.intersection(layers[a], layers[b], grid_size=GRID) for a, b in across]
-    return shapely.union_all(both, grid_size=GRID)
+    both = shapely.get_parts([shapely.intersection(layers[a], layers[b], grid_size=GRID) for a, b in across])
+    return shapely.union_all([each for each in both if each.area], grid_size=GRID)
 
 
 def odd_photos(scene, program, solvable):
