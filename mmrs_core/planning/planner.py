@@ -63,7 +63,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     sortie takes more than a charge less the reserve allows, waits included; every leg keeps its
     clearance. The same scene and seed give the same plan, unless a time or a stop ends the search. Where
     a task leaves open how many robots it wants, numbers are tried too (see `robot_counts`): in a small
-    mission no other number ends it sooner. Tasks in which robots stay as relays are planned around the others
+    mission no other number ends it sooner. Deadlines and longest durations that the plan without them keeps
+    change nothing. Tasks in which robots stay as relays are planned around the others
     (see `plan_with_relays`).
 
     Args:
@@ -81,7 +82,12 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     if short := [*_with_remedies(team, jobs), *_shared_choices(scene, jobs)]:
         able = [*_alone([job for job in jobs if all(map(team.able, job.tasks()))])]
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
-    teams, effort = _Remembered(teams_to_try(team)), effort or Effort()
+    effort = effort or Effort()
+    if (free := _without_limits(scene)) != scene:
+        made = plan(free, seed=seed, effort=effort.trial())
+        if not broken_times(team, _spans(made)):
+            return made
+    teams = _Remembered(teams_to_try(team))
     effort.least = least_makespan(team, jobs)
     find = partial(find_decisions, jobs=jobs, effort=effort)
     best: Mapping[str, int] = {}
@@ -104,6 +110,15 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return replace(idle_apart(scene, found, tried), lower_bound=effort.least)
+
+
+def _without_limits(scene: Scene) -> Scene:
+    tasks = (replace(task, deadline=None, longest=None) for task in scene.tasks)
+    return replace(scene, tasks=tuple(tasks))
+
+
+def _spans(made: Plan) -> dict[str, tuple[float, float]]:
+    return {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
 
 
 def _signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | None) -> Plan | None:
@@ -290,8 +305,7 @@ def _plan_of(
     if known or _better(first, best) is best:
         raise _NotBetterError("no better plan")
     made = _kept_apart(team, jobs, search, decisions, first, best)
-    spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
-    _refuse_late(team, jobs, spans, lambda: made.robots)
+    _refuse_late(team, jobs, _spans(made), lambda: made.robots)
     return first, made
 
 

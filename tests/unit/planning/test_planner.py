@@ -239,6 +239,17 @@ def test_a_duration_that_is_exceeded_is_refused_with_by_how_much():
         plan(whole)
 
 
+def test_a_longest_duration_that_a_plan_keeps_anyway_changes_nothing():
+    works = {
+        "a": road((-200.0, 100.0, 20.0), (200.0, 100.0, 20.0), cuts=CUTS[:3]),
+        "b": road((200.0, 300.0, 20.0), (700.0, 300.0, 20.0), cuts=CUTS[:3]),
+    }
+    team = [robot(f"r{k}", (20.0 * k, 0.0, 0.0)) for k in range(3)]
+    found = sound(scene(team, works))
+    kept = {name: task(name, longest=found.ends[name] - found.begins[name]) for name in works}
+    assert plan(scene(team, works, tasks=kept)) == found
+
+
 def test_a_higher_priority_comes_first():
     works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((-300.0, 0.0, 20.0))}
     whole = scene([robot()], works, tasks={"b": task("b", priority=5)})
