@@ -114,7 +114,6 @@ def _merged(pilot: Pilot, choice: Choice, state: State, ends: Sequence[State]) -
         used=max(end.used for end in ends) + stops,
         before=max(end.before for end in ends),
         since=min((end.since for end in ends if end.since is not None), default=None),
-        lead=time - min(end.time - end.lead for end in ends),
         early=min(end.early for end in ends),
         late=max(end.late for end in ends) + stops,
         length=max(end.length for end in ends),

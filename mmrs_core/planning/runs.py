@@ -153,7 +153,7 @@ class PortionRun:
             first = i == 0 and sortie.first == self.begin
             last = final and i == len(strokes) - 1
             state = self._pilot.serve(state, stroke, material.task, material.rule, first, last)
-        return state._replace(used=done.used, lead=done.lead, early=done.early, late=done.late)
+        return state._replace(used=done.used, early=done.early, late=done.late)
 
 
 def _largest(low: int, high: int, holds: Callable[[int], bool]) -> int:

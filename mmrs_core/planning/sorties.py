@@ -196,7 +196,7 @@ class Pilot:
     def _from_home(self, state: State, approach: ApproachRoute, ready: Ready, task: str) -> State:
         """Wait at home for signals and clock, then go; wait for the rest of the clock where work begins."""
         there = self._along(self._wait(state, replace(ready, earliest=None), task), approach, task)
-        if ready.earliest is None or there.time - there.lead >= ready.earliest:
+        if ready.earliest is None or there.early >= ready.earliest:
             return there
         travel = there.time - max(state.time, ready.time)
         later = max(0.0, ready.earliest - travel)
@@ -208,9 +208,8 @@ class Pilot:
 
         By the clock a robot waits for a certain time, so that it must wait longer if it may be early.
         """
-        soonest = state.time - state.lead
-        late = ready.earliest is not None and ready.earliest > soonest + _SAME
-        clock = (ready.earliest or 0.0) + state.lead if late else None
+        late = ready.earliest is not None and ready.earliest > state.early + _SAME
+        clock = (ready.earliest or 0.0) + state.time - state.early if late else None
         if not ready.signals and clock is None:
             return state
         end = max(state.time, ready.time, clock or 0.0)
@@ -226,7 +225,6 @@ class Pilot:
         return state._replace(
             time=end,
             used=used,
-            lead=end - max(soonest if clock is None else clock - state.lead, ready.bounds.soonest),
             early=max(early, ready.bounds.early),
             late=max(state.late + held.longest, ready.bounds.late),
             busy=state.busy + (end - state.time if state.away else 0.0),

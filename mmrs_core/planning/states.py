@@ -22,7 +22,6 @@ class State(NamedTuple):
         away: whether it has left home since it was last there to stay.
         used: seconds on this charge at most; before: of them before it last launched.
         since: when it launched, or began this charge, at the earliest; None: it stands on the ground.
-        lead: seconds by which it may be here earlier.
         early, late: when it may be here at the earliest, also if charging ends at once, and at the latest.
         length: metres travelled. busy: seconds away from home. sorties: times it left home.
         trail: its steps so far, last one first.
@@ -34,7 +33,6 @@ class State(NamedTuple):
     used: float = 0.0
     before: float = 0.0
     since: float | None = None
-    lead: float = 0.0
     early: float = 0.0
     late: float = 0.0
     length: float = 0.0
@@ -52,7 +50,6 @@ class State(NamedTuple):
             time=self.time + seconds.expected,
             at=at,
             used=self.used + seconds.longest,
-            lead=self.lead + seconds.expected - seconds.shortest,
             early=self.early + seconds.shortest,
             late=self.late + seconds.longest,
             length=self.length + length,
@@ -62,7 +59,7 @@ class State(NamedTuple):
     @property
     def bounds(self) -> Bounds:
         """Return when it may be here."""
-        return Bounds(self.time - self.lead, self.early, self.late)
+        return Bounds(self.early, self.late)
 
     def steps(self) -> tuple[Step, ...]:
         """Return the steps so far, in order."""
@@ -79,11 +76,9 @@ class Bounds(NamedTuple):
     """When something may be, seconds.
 
     Attributes:
-        soonest: at the earliest, if charging takes as long as declared.
-        early: likewise, if it ends at once. late: at the latest.
+        early: at the earliest, also if charging ends at once. late: at the latest.
     """
 
-    soonest: float = 0.0
     early: float = 0.0
     late: float = 0.0
 

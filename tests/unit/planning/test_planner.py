@@ -21,7 +21,7 @@ from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, SharedWorks, Signal, Transit
+from mmrs_core.scene import Await, Branch, Launch, Recharge, Recover, Serve, SharedWorks, Signal, Transit
 from mmrs_runtime.timing import LegTiming
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
@@ -224,6 +224,14 @@ def test_an_earliest_time_is_kept_even_by_a_robot_that_does_not_stop_at_corners(
     wait = next(step for step in steps_of(found, "r1", Await) if step.until is not None)
     without_stops = wait.begin - 2 * 20.0
     assert without_stops + (wait.until - wait.begin) >= 130.0 - 1e-6
+
+
+def test_an_earliest_time_is_kept_even_by_a_robot_whose_charging_ends_at_once():
+    works = {"a": visit((600.0, 0.0, 20.0)), "b": visit((-600.0, 0.0, 20.0))}
+    short = with_kinematics(robot(), endurance=200.0, recharge=50.0)
+    found = sound(scene([short], works, after=[("a", "b")], tasks={"b": task("b", earliest=230.0)}))
+    (charging,) = steps_of(found, "r1", Recharge)
+    assert found.begins["b"] - (charging.end - charging.begin) == pytest.approx(230.0)
 
 
 def test_a_deadline_that_cannot_be_kept_is_refused_with_how_late_it_is():
