@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from math import floor, inf
-from operator import itemgetter
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
@@ -126,8 +125,11 @@ def _signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | No
     plans = {
         round(each.makespan, 1): (team, each) for team, each in dear if team.scene.robots == scene.robots
     }
-    shortest = sorted(plans.items(), key=itemgetter(0))[:_MOST_SIGNALLED]
-    for _, (team, each) in shortest:
+    ordered = [plans[makespan] for makespan in sorted(plans)]
+    last = reversed(ordered[_MOST_SIGNALLED:])
+    for tried, (team, each) in enumerate([*ordered[:_MOST_SIGNALLED], *last]):
+        if found is not None and tried >= _MOST_SIGNALLED:
+            break
         told = signalled(team, each, inf if found is None else found.makespan)
         found = found if told is None else _better(told, found)
     return found
@@ -201,7 +203,7 @@ _FEW_PAIRS = 100
 """Jobs times robots up to which a refusal is worth another whole plan."""
 
 _MOST_SIGNALLED = 2
-"""Plans, the shortest first, whose robots are then kept apart by signals."""
+"""Plans, the shortest first, whose robots are then kept apart by signals; others only if there is no plan."""
 
 
 def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | None) -> Plan:

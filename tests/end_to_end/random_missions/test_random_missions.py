@@ -62,3 +62,9 @@ def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):
     outcome = outcome_of(seed, contributions, tmp_path, (3, 3))
     assert (outcome.refused, outcome.complaints) == ("", [])
     assert min(outcome.coverage.values(), default=1.0) > 1.0 - 1e-6
+
+
+@pytest.mark.thorough
+def test_robots_that_keep_apart_only_in_turns_and_by_signals_are_planned(contributions, tmp_path):
+    outcome = outcome_of(300431, contributions, tmp_path, (3, 3))
+    assert (outcome.refused, outcome.complaints) == ("", [])
