@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
-from math import floor, inf
+from math import ceil, floor, inf
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
@@ -199,6 +199,9 @@ class _ShortError(_UnexplainedError):
 _FAIR = 1.2
 """Times the mission time without separation up to which no other team is planned to keep apart for less."""
 
+_PARTS = (0.75, 0.5, 0.25)
+"""Parts of a team that are tried where all of it together can only be kept apart at a cost."""
+
 _FEW_PAIRS = 100
 """Jobs times robots up to which a refusal is worth another whole plan."""
 
@@ -221,6 +224,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
         InfeasibleError: no plan was found, or no better one is to be expected.
     """
     refusal: TooNearError | None = None
+    found: Plan | None = None
     try:
         found, made = _plan_of(team, jobs, search, best)
         best = _better(made, best)
@@ -228,7 +232,7 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
             return best
     except TooNearError as error:
         refusal = error
-    for other, in_turns in _alternatives(team, refusal):
+    for other, in_turns in _alternatives(team, found, refusal):
         try:
             _, made = _plan_of(other, jobs, search, best, in_turns=in_turns)
         except _NotBetterError:
@@ -267,15 +271,19 @@ def _unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
         yield f"{', '.join(names)} {ends}, so that robots on the ground keep apart"
 
 
-def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team, bool]]:
+def _alternatives(team: Team, found: Plan | None, error: TooNearError | None) -> Iterator[tuple[Team, bool]]:
     """Yield (team, whether its robots fly one after the other) that may help where robots come too near.
 
-    Robots may transit one above the other, keep away from where others stand at home, end at home where
-    they need not, or take turns.
+    Robots may transit one above the other, stay at home in part, keep away from where others stand at home,
+    end at home where they need not, or take turns.
     """
     altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
     if altitudes:
         yield team.changed(team.homebound, altitudes=altitudes), False
+    for smaller in _smaller(team, found) if found is not None else ():
+        yield smaller, False
+        if altitudes:
+            yield smaller.changed(team.homebound, altitudes=altitudes), False
     if error is None:
         return
     if error.at_home:
@@ -288,6 +296,16 @@ def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team
     everyone = frozenset(team.pilots)
     yield team.changed(everyone), True
     yield team.changed(everyone, from_homes=least), True
+
+
+def _smaller(team: Team, found: Plan) -> Iterator[Team]:
+    """Yield teams of which only those robots leave home that have most to do in a plan."""
+    busiest = sorted((each for each in found.robots if each.steps), key=lambda each: -each.busy)
+    for part in _PARTS:
+        names = {each.robot for each in busiest[: ceil(part * len(busiest))]}
+        smaller = team.at_home(frozenset(team.pilots) - names)
+        if not any(smaller.shortfalls()):
+            yield smaller
 
 
 def _plan_of(

@@ -3,6 +3,7 @@ from dataclasses import replace
 import pytest
 from plain_scenes import (
     CRAWLER,
+    DRONE,
     box,
     control,
     field_work,
@@ -17,11 +18,23 @@ from plain_scenes import (
 from sound_plans import complaints, sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning import planner
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Await, Branch, Launch, Recharge, Recover, Serve, SharedWorks, Signal, Transit
+from mmrs_core.scene import (
+    Await,
+    Branch,
+    Corridor,
+    Launch,
+    Recharge,
+    Recover,
+    Serve,
+    SharedWorks,
+    Signal,
+    Transit,
+)
 from mmrs_runtime.timing import LegTiming
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
@@ -434,6 +447,26 @@ def test_a_robot_without_work_names_the_separation_only_where_it_is_known_to_be_
     assert [each.idle for each in alone.robots if each.idle] == [
         "'a': one robot must do all of it, and the mission ends no later with another one"
     ]
+
+
+def test_robots_stay_at_home_where_others_keep_apart_for_less_without_them(monkeypatch):
+    lane = Corridor("lane", ((10.0, 60.0), (10.0, 200.0)), 20.0, low=30.0, high=90.0)
+    kinematics = replace(DRONE, timing=LegTiming(spread=0.1))
+    team = [robot(f"r{k}", (10.0 * k, 0.0, 0.0), kinematics=kinematics) for k in range(6)]
+    shell = ((-60.0, 400.0), (100.0, 400.0), (100.0, 500.0), (-60.0, 500.0))
+    works = {
+        "field": field_work(scene(team, {}), shell, altitude=40.0),
+        "mill": visit((160.0, 560.0, 25.0)),
+        "timber": visit((-140.0, 540.0, 25.0)),
+    }
+    wanted = {"field": task("field", wanted=4)}
+    whole = scene(team, works, tasks=wanted, minimum_separation=8.0, transit_altitude=55.0, corridors=(lane,))
+    found = sound(whole)
+    idle = [each.idle for each in found.robots if not each.steps]
+    assert idle
+    assert all("stays at home, so that robots keep apart" in each for each in idle)
+    monkeypatch.setattr(planner, "_PARTS", ())
+    assert found.makespan < 0.95 * plan(whole).makespan
 
 
 def test_too_few_robots_of_one_sort_are_named_with_those_that_they_cannot_share_with():
