@@ -33,7 +33,7 @@ from time import process_time
 
 import numpy as np
 
-SIZES = ((3, 20, 2.0, 5), (20, 200, 10.0, 3), (100, 2000, 30.0, 1))
+SIZES = ((3, 20, 2.0, 5), (20, 200, 10.0, 5), (100, 2000, 30.0, 3))
 """Robots, stops, seconds of CPU for each, and how many seeds."""
 
 WAITING = ((3, 20, 3), (4, 50, 3), (8, 200, 3))
