@@ -62,8 +62,18 @@ class Charges:
         return {
             name
             for name, uses in self._of(plan, self._pilots if names is None else names).items()
-            if any(used + more > self._pilots[name].charge + _SAME for used, more in uses)
+            if any(used + more > self._allowed(name) + _SAME for used, more in uses)
         }
+
+    def left(self, plan: Plan) -> dict[str, list[float]]:
+        """Return, by robot, the seconds left of a charge at least after each flight, or at the end."""
+        return {
+            name: [self._allowed(name) - used - more for used, more in uses]
+            for name, uses in self._of(plan, self._pilots).items()
+        }
+
+    def _allowed(self, robot: str) -> float:
+        return self._pilots[robot].charge + self._pilots[robot].spare
 
     def _longest(self, robot: str, step: Step) -> float:
         if not isinstance(step, Transit | Serve):

@@ -50,6 +50,9 @@ _LEFT_FOR = (5, 15)
 _CONFLICTS_PER_SECOND = 0.2
 """What a second beyond the limit weighs."""
 
+_AT_MOST = 1.2
+"""Times the seconds expected of going higher that count against a charge."""
+
 _MOST_PAIRS = 1_000_000
 """Pairs of ways that are too near, up to which a choice is sought."""
 
@@ -65,13 +68,13 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     planned = traffic = Traffic(team.scene, plan, least, timing=timing, pilots=team.pilots)
     legs = {each.robot: list(_legs(team, each.robot, each.steps)) for each in plan.robots}
-    best, grounded, share = planned, set[str](), 1.0
+    best, grounded, share, spare = planned, set[str](), 1.0, planned.left_of_charges()
     for turn in range(_ROUNDS):
         met = dict.fromkeys(_met(traffic, legs))
         closed = [leg for leg in met if len(leg.ways) == 1 and leg.robot not in grounded]
         for leg in closed:
             leg.ways += _higher(team.pilots[leg.robot].travel, leg.ways[0], least)
-        choice = _Choice(traffic, plan, legs)
+        choice = _Choice(traffic, plan, legs, spare)
         if not choice.pairs or choice.pairs > _MOST_PAIRS:
             break
         share, changed = choice.improve(np.random.default_rng(turn), share, most / plan.makespan)
@@ -109,6 +112,7 @@ class _Leg:
         begin, end: indices of its steps, the first and that after the last one.
         ways: as many steps each, with the times of the plan's own, which come first; lasting steps count from
             there.
+        flight: how many times the robot has come down before.
         chosen: index of the way.
     """
 
@@ -116,6 +120,7 @@ class _Leg:
     begin: int
     end: int
     ways: list[_Way]
+    flight: int
     chosen: int = 0
 
     @property
@@ -125,7 +130,7 @@ class _Leg:
 
 def _legs(team: Team, robot: str, steps: Sequence[Step]) -> Iterator[_Leg]:
     """Yield the legs of a robot; a launch and a recovery at home are parts of those after and before them."""
-    home, index = team.scene.robot(robot).home, 0
+    home, index, flight = team.scene.robot(robot).home, 0, 0
     while index < len(steps):
         match steps[index : index + 2]:
             case (Launch(), Transit()):
@@ -134,9 +139,10 @@ def _legs(team: Team, robot: str, steps: Sequence[Step]) -> Iterator[_Leg]:
                 end = index + 2
             case _:
                 end = index + 1
-        yield _Leg(robot, index, end, [tuple(steps[index:end])])
+        yield _Leg(robot, index, end, [tuple(steps[index:end])], flight)
+        flight += isinstance(steps[end - 1], Recover)
         index = end
-    yield _Leg(robot, index, index + 1, [()])
+    yield _Leg(robot, index, index + 1, [()], flight)
 
 
 def _met(traffic: Traffic, legs: Mapping[str, Sequence[_Leg]]) -> Iterator[_Leg]:
@@ -179,13 +185,20 @@ class _Choice:
         pairs: number of pairs of ways that are.
     """
 
-    def __init__(self, traffic: Traffic, plan: Plan, legs: Mapping[str, Sequence[_Leg]]) -> None:
+    def __init__(
+        self,
+        traffic: Traffic,
+        plan: Plan,
+        legs: Mapping[str, Sequence[_Leg]],
+        spare: Mapping[str, Sequence[float]],
+    ) -> None:
         """Make it.
 
         Args:
             traffic: of the ways that are chosen so far.
             plan: of the legs' own ways.
             legs: by robot, in the order of the plan's robots.
+            spare: by robot: seconds of a charge left after each flight of the plan.
         """
         self._legs = [leg for mine in legs.values() for leg in mine]
         rides = [ride for leg in self._legs for ride in _rides(traffic, leg)]
@@ -195,6 +208,11 @@ class _Choice:
         self._robot = np.repeat(np.arange(len(legs)), list(map(len, legs.values())))[self._leg]
         self._seconds = np.array([_longer(leg.ways[0], way) for leg in self._legs for way in leg.ways])
         self._ends = np.array([each.steps[-1].end if each.steps else 0.0 for each in plan.robots])
+        flights = {(leg.robot, leg.flight): None for leg in self._legs}
+        self._spare = np.array([max(0.0, [*spare.get(name, ()), 1e9][flight]) for name, flight in flights])
+        places = {flight: len(legs) + k for k, flight in enumerate(flights)}
+        mine = np.array([places[leg.robot, leg.flight] for leg in self._legs])[self._leg]
+        self._limited = np.stack([self._robot, mine], axis=1)
         self._makespan, self._steps = plan.makespan, min(_STEPS, _STEPS_PER_LEG * sum(n > 1 for n in sizes))
         parts = [pieces_of(each, int(robot)) for each, robot in zip(rides, self._robot, strict=True)]
         owner = np.repeat(np.arange(len(parts)), list(map(len, parts)))
@@ -227,28 +245,30 @@ class _Choice:
         """
         first = chosen = self._first + [leg.chosen for leg in self._legs]
         conflicts = np.bincount(np.concatenate([self._near[way] for way in chosen]), minlength=len(self._leg))
-        longer = np.zeros(len(self._ends))
-        np.add.at(longer, self._robot[chosen], self._seconds[chosen])
+        longer = np.zeros(len(self._ends) + len(self._spare))
+        np.add.at(longer, self._limited[chosen].ravel(), self._seconds[chosen].repeat(2))
         best, chosen, fewest, since = first, first.copy(), len(first) + 1, 0
         again = np.zeros(len(self._leg), np.intp)
         share, limits = least, [each for each in _LIMITS if least <= each <= max(least, most)]
         for step, share in enumerate(each for each in limits for _ in range(self._steps)):
-            late = np.maximum(0.0, self._ends + longer - share * self._makespan)
-            wrong = (conflicts[chosen] > 0) | (late[self._robot[chosen]] > 0.0)
+            room = np.concatenate([share * self._makespan - self._ends, self._spare / _AT_MOST])
+            beyond = longer > room
+            wrong = (conflicts[chosen] > 0) | beyond[self._limited[chosen]].any(axis=1)
             if not wrong.any():
                 best = chosen
                 break
-            if (count := int(np.count_nonzero(conflicts[chosen]))) < fewest:
+            count = int(np.count_nonzero(conflicts[chosen]) + np.count_nonzero(beyond[len(self._ends) :]))
+            if count < fewest:
                 best, fewest, since = chosen.copy(), count, step
             elif fewest and step >= since + _VAIN * self._steps:
                 break
-            way = self._changed(chosen, conflicts, longer, share, wrong, again > step, random)
+            way = self._changed(chosen, conflicts, longer - room, wrong, again > step, random)
             if way is None:
                 continue
             left = chosen[self._leg[way]]
             conflicts[self._near[way]] += 1
             conflicts[self._near[left]] -= 1
-            longer[self._robot[way]] += self._seconds[way] - self._seconds[left]
+            longer[self._limited[way]] += self._seconds[way] - self._seconds[left]
             chosen[self._leg[way]] = way
             again[left] = step + random.integers(*_LEFT_FOR)
         for leg, way in zip(self._legs, (best - self._first).tolist(), strict=True):
@@ -259,21 +279,20 @@ class _Choice:
         self,
         chosen: Indices,
         conflicts: Indices,
-        longer: Floats,
-        share: float,
+        beyond: Floats,
         wrong: Flags,
         barred: Flags,
         random: np.random.Generator,
     ) -> int | None:
         """Return the way that is to replace another one of its leg."""
-        ways = np.nonzero(wrong[self._leg] & ~barred)[0]
-        own, robots = chosen[self._leg[ways]], self._robot[ways]
-        ways, own, robots = (each[ways != own] for each in (ways, own, robots))
+        ways = np.nonzero(wrong[self._leg] & ~barred & np.isfinite(self._seconds))[0]
+        own = chosen[self._leg[ways]]
+        ways, own = (each[ways != own] for each in (ways, own))
         if not len(ways):
             return None
-        spare = self._ends[robots] + longer[robots] - share * self._makespan
-        more = np.maximum(0.0, spare + self._seconds[ways] - self._seconds[own]) - np.maximum(0.0, spare)
-        costs = conflicts[ways] - conflicts[own] + _CONFLICTS_PER_SECOND * more
+        now, more = beyond[self._limited[ways]], (self._seconds[ways] - self._seconds[own])[:, None]
+        seconds = (np.maximum(0.0, now + more) - np.maximum(0.0, now)).sum(axis=1)
+        costs = conflicts[ways] - conflicts[own] + _CONFLICTS_PER_SECOND * seconds
         return int(random.choice(ways[costs <= costs.min() + 1e-9]))
 
 

@@ -24,6 +24,7 @@ from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import (
     TooNearError,
     distance_to_keep,
+    recharges,
     separated,
     stacked_altitudes,
     starting_later,
@@ -202,6 +203,9 @@ _FAIR = 1.2
 _PARTS = (0.75, 0.5, 0.25)
 """Parts of a team that are tried where all of it together can only be kept apart at a cost."""
 
+_SPARE = (0.15, 0.08)
+"""Parts of each charge that are then kept for flying higher, where robots recharge."""
+
 _FEW_PAIRS = 100
 """Jobs times robots up to which a refusal is worth another whole plan."""
 
@@ -235,12 +239,10 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
     for other, in_turns in _alternatives(team, found, refusal):
         try:
             _, made = _plan_of(other, jobs, search, best, in_turns=in_turns)
-        except _NotBetterError:
-            break
         except InfeasibleError:
             continue
         best = _better(replace(made, notes=(*_unasked_returns(team, other, made), *made.notes)), best)
-        if refusal is not None:
+        if found is None or best.makespan <= _FAIR * found.makespan:
             break
     if best is None:
         if refusal is None:
@@ -274,10 +276,12 @@ def _unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
 def _alternatives(team: Team, found: Plan | None, error: TooNearError | None) -> Iterator[tuple[Team, bool]]:
     """Yield (team, whether its robots fly one after the other) that may help where robots come too near.
 
-    Robots may transit one above the other, stay at home in part, keep away from where others stand at home,
-    end at home where they need not, or take turns.
+    Robots may keep some of each charge for levels, transit one above the other, stay at home in part, keep
+    away from where others stand at home, end at home where they need not, or take turns.
     """
     altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
+    if found is not None and recharges(found):
+        yield from ((team.changed(team.homebound, spare=each), False) for each in _SPARE)
     if altitudes:
         yield team.changed(team.homebound, altitudes=altitudes), False
     for smaller in _smaller(team, found) if found is not None else ():

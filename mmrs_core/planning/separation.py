@@ -330,6 +330,10 @@ class Traffic:
         """Return the robots that wait longer in another plan and then take more than a charge allows."""
         return set() if self._charges is None else self._charges.short(plan, self._changed_in(plan))
 
+    def left_of_charges(self) -> dict[str, list[float]]:
+        """Return, by robot, the seconds left of a charge after each flight; empty where none count."""
+        return {} if self._charges is None else self._charges.left(self.plan)
+
     def _changed_in(self, plan: Plan) -> frozenset[str]:
         before = {each.robot: each.steps for each in self.plan.robots}
         return frozenset(each.robot for each in plan.robots if each.steps != before[each.robot])

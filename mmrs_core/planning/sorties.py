@@ -29,12 +29,18 @@ class Pilot:
     Attributes:
         paces: by parts in one go, legs beside them and bound: when each begins and ends, see `paced`.
         charge: seconds that a charge allows.
+        spare: seconds of a charge that are kept for flying higher, beside those.
         stuck: whether it cannot set out, for no charge suffices for a diversion from above home.
         fresh: seconds that starting takes of a charge at most; stopping: likewise, at the end.
     """
 
     def __init__(
-        self, travel: Travel, *, homebound: bool = True, diversions: Diversions | None = None
+        self,
+        travel: Travel,
+        *,
+        homebound: bool = True,
+        diversions: Diversions | None = None,
+        spare: float = 0.0,
     ) -> None:
         """Make it.
 
@@ -42,13 +48,16 @@ class Pilot:
             travel: routes of the robot.
             homebound: whether it always keeps enough to go home, even if it may stay where it ends.
             diversions: to emergency areas, for which its charge must always suffice; None: it need not.
+            spare: part of each charge that is kept for flying higher.
         """
         self.travel = travel
         self.robot, self.kinematics = travel.robot, travel.kinematics
         self.homebound = homebound or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
-        self.charge = min(self.kinematics.endurance, by_energy)
+        whole = min(self.kinematics.endurance, by_energy)
+        self.spare = spare * whole if whole < inf else 0.0
+        self.charge = whole - self.spare
         self.diversions = diversions if self.charge < inf else None
         self.stuck = self.diversions is not None and self.diversions.from_home >= self.charge
         self._noticing = noticing(self.kinematics.timing)

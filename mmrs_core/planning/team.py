@@ -73,6 +73,7 @@ class Team:
         altitudes: Mapping[str, float] | None = None,
         from_homes: float | None = None,
         spaces: Spaces | None = None,
+        spare: float = 0.0,
     ) -> None:
         """Lay everything out.
 
@@ -83,6 +84,7 @@ class Team:
             altitudes: of transit, by robot; None: the scene's for all.
             from_homes: metres that robots keep from the homes of others; None: see `Spaces`.
             spaces: of another team of the same robots; None: new ones.
+            spare: see `Pilot`.
         """
         self.scene, self.fine = scene, fine
         self.spaces = spaces or Spaces(scene, from_homes=from_homes)
@@ -106,7 +108,9 @@ class Team:
         }
         diversions = diversions_of(scene, travels)
         self.pilots: Mapping[str, Pilot] = {
-            name: Pilot(travel, homebound=name in self.homebound, diversions=diversions.get(name))
+            name: Pilot(
+                travel, homebound=name in self.homebound, diversions=diversions.get(name), spare=spare
+            )
             for name, travel in travels.items()
         }
         self.kinds = _kinds_of(scene, self.pilots)
@@ -204,11 +208,12 @@ class Team:
         robots: tuple[Robot, ...] | None = None,
         altitudes: Mapping[str, float] | None = None,
         from_homes: float | None = None,
+        spare: float = 0.0,
     ) -> Team:
         """Return a team that does the same tasks in another way, made once; arguments as for a new one."""
         robots = self.scene.robots if robots is None else robots
         returning = tuple(robot.return_home for robot in robots)
-        key = (homebound, returning, altitudes is None, from_homes)
+        key = (homebound, returning, altitudes is None, from_homes, spare)
         if key not in self._others:
             self._others[key] = Team(
                 replace(self.scene, robots=robots),
@@ -217,6 +222,7 @@ class Team:
                 altitudes=altitudes,
                 from_homes=from_homes,
                 spaces=self.spaces if from_homes is None else None,
+                spare=spare,
             )
         return self._others[key].wanting({task.name: task.wanted for task in self.scene.tasks})
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from plain_scenes import box, robot, scene, visit, with_kinematics
+from plain_scenes import DRONE, box, field_work, robot, scene, visit, with_kinematics
 from plan_replay import complaints
 
 from mmrs_core.planning.assembly import planned
@@ -134,3 +134,12 @@ def test_a_drone_that_is_sooner_at_a_level_still_begins_no_earlier_than_its_earl
     assert legs(found)["r0"][0] != legs(alone)["r0"][0]
     place = next(i for i, step in enumerate(found.robots[0].steps) if isinstance(step, Serve))
     assert Team(whole).timelines(hasty=False).of(found)["r0"].moments[place][0] >= 90.0
+
+
+def test_robots_that_recharge_keep_some_of_each_charge_for_levels():
+    kinematics = replace(DRONE, timing=LegTiming(spread=0.1), endurance=300.0, recharge=60.0)
+    team = [robot(f"r{k}", (14.0 * k, 0.0, 0.0), kinematics=kinematics) for k in range(3)]
+    shell = ((0.0, 60.0), (400.0, 60.0), (400.0, 460.0), (0.0, 460.0))
+    works = {"field": field_work(scene(team, {}), shell, altitude=40.0)}
+    found, alone = whole_and_alone(scene(team, works, minimum_separation=5.0))
+    assert found.makespan < 1.05 * alone.makespan
