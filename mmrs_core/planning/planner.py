@@ -23,6 +23,7 @@ from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import (
     TooNearError,
+    Traffic,
     distance_to_keep,
     recharges,
     separated,
@@ -280,7 +281,10 @@ def _alternatives(team: Team, found: Plan | None, error: TooNearError | None) ->
     away from where others stand at home, end at home where they need not, or take turns.
     """
     altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
-    if found is not None and recharges(found):
+    charging = any(
+        each.kinematics.recharge is not None and each.charge < inf for each in team.pilots.values()
+    )
+    if charging if found is None else recharges(found):
         yield from ((team.changed(team.homebound, spare=each), False) for each in _SPARE)
     if altitudes:
         yield team.changed(team.homebound, altitudes=altitudes), False
@@ -373,8 +377,9 @@ def _kept_apart(
         refusal = error
     least = best if made is None else _better(made, best)
     levels = levelled(team, jobs, decisions, found, inf if least is None else least.makespan)
-    if levels is not None and not levels.conflicts:
-        made = levels.plan if made is None else _better(levels.plan, made)
+    apart = None if levels is None else _waiting(team, levels, least)
+    if apart is not None:
+        made = apart if made is None else _better(apart, made)
     elif made is None:
         search.dear.append((team, found))
     if made is not None and made.makespan > DEAR * found.makespan:
@@ -384,6 +389,17 @@ def _kept_apart(
     if made is None:
         raise refusal or InfeasibleError("no plan")
     return made
+
+
+def _waiting(team: Team, levels: Traffic, best: Plan | None) -> Plan | None:
+    """Return a plan in which robots wait where levels do not keep them apart; None if none is better."""
+    if not levels.conflicts:
+        return levels.plan
+    with suppress(TooNearError):
+        made = separated(team, levels.plan)
+        if made.makespan <= _FAIR * levels.plan.makespan:
+            return made
+    return signalled(team, levels.plan, inf if best is None else best.makespan)
 
 
 def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:

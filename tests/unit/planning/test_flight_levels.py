@@ -143,3 +143,11 @@ def test_robots_that_recharge_keep_some_of_each_charge_for_levels():
     works = {"field": field_work(scene(team, {}), shell, altitude=40.0)}
     found, alone = whole_and_alone(scene(team, works, minimum_separation=5.0))
     assert found.makespan < 1.05 * alone.makespan
+
+
+def test_robots_wait_where_levels_do_not_keep_all_of_them_apart():
+    team = fleet([(14.0 * (k % 4), -14.0 * (k // 4)) for k in range(8)])
+    shell = ((0.0, 60.0), (400.0, 60.0), (400.0, 460.0), (0.0, 460.0))
+    works = {"field": field_work(scene(team, {}), shell, altitude=40.0)}
+    found, alone = whole_and_alone(scene(team, works, minimum_separation=5.0))
+    assert found.makespan < 1.1 * alone.makespan
