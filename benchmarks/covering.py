@@ -3,15 +3,19 @@
 Strokes of width w over an area A are A/w metres long at least, and actions that cover w by l metres
 come A/(w·l) times at least, both only if nothing is ever covered twice and no hop is needed.
 
+The directions of edges are ranked by sums along the sorted edges; beside that, by a matrix of all directions
+and all edges, and by strips that are laid at each of 180 directions and counted.
+
     python benchmarks/covering.py --seed 1 > benchmarks/results/covering.txt
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from datetime import date
+from functools import partial
 from itertools import pairwise
 from math import dist, inf, pi
 from time import process_time
@@ -20,6 +24,7 @@ import numpy as np
 import shapely
 
 from mmrs_core.planning.coverage import Sweep, work_over
+from mmrs_core.planning.swaths import _across, _Reach, _sweep
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Ring, Robot, RobotType, Scene, Work
 
 TYPE = RobotType("drone", (), (), 0.5, None, (Capability(0.0, None, (0.0, 10.0)),), (), {}, Part((), {}))
@@ -67,6 +72,48 @@ def main() -> None:
         rows.append((swept.length, swept.seconds, photos.length, photos.actions, photos.seconds))
     means = np.mean(rows, axis=0)
     print(f"{'mean':39}{means[0]:8.3f}{means[1]:7.2f}{means[2]:13.3f}{means[3]:8.3f}{means[4]:7.2f}")
+    directions(seed)
+
+
+def directions(seed: int) -> None:
+    """Print what it takes to rank the directions of stars' edges, and what brute force takes."""
+    rng = np.random.default_rng(seed)
+    print(
+        f"\n{'directions of edges: ms':32}{'sums':>8}{'matrix':>10}{'/ sums':>8}{'strips':>10}{'/ sums':>8}"
+    )
+    for corners in (10, 100, 1000, 10_000):
+        field = shapely.Polygon(_star(rng, corners, 600.0, 0.6))
+        edges = np.diff(shapely.get_coordinates(field.exterior), axis=0)
+        angles = np.arctan2(edges[:, 1], edges[:, 0]) % pi
+        assert np.allclose(_across(angles, edges), _by_matrix(angles, edges))
+        sums = _least_ms(partial(_across, angles, edges))
+        matrix = _least_ms(partial(_by_matrix, angles, edges))
+        row = f"{sums:8.3f}{matrix:10.3f}{matrix / sums:8.1f}"
+        if corners <= 100:
+            strips = _least_ms(partial(_by_strips, field))
+            row += f"{strips:10.0f}{strips / sums:8.0f}"
+        print(f"{f'{corners} corners':32}{row}", flush=True)
+
+
+def _by_matrix(angles: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    return np.abs(np.stack([-np.sin(angles), np.cos(angles)], axis=1) @ edges.T).sum(axis=1)
+
+
+def _by_strips(field: shapely.Polygon) -> list[int]:
+    reach = _Reach(20.0, 0.0, shapely.Polygon())
+    return [len(_sweep([field], reach, each * pi / 180.0)) for each in range(180)]
+
+
+def _least_ms(done: Callable[[], object]) -> float:
+    """Return the milliseconds of CPU that something takes at least, of three tries."""
+    found = []
+    for _ in range(3):
+        times, begun = 0, process_time()
+        while process_time() - begun < 0.1:
+            done()
+            times += 1
+        found.append(1e3 * (process_time() - begun) / times)
+    return min(found)
 
 
 def fields(seed: int) -> Iterator[Field]:
