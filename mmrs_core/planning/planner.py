@@ -210,6 +210,9 @@ _SPARE = (0.15, 0.08)
 _FEW_PAIRS = 100
 """Jobs times robots up to which a refusal is worth another whole plan."""
 
+_WORTH_SIGNALS = 1.1
+"""Times the mission time without separation from which on signals are sought beside levels."""
+
 _MOST_SIGNALLED = 2
 """Plans, the shortest first, whose robots are then kept apart by signals; others only if there is no plan."""
 
@@ -378,11 +381,11 @@ def _kept_apart(
     least = best if made is None else _better(made, best)
     levels = levelled(team, jobs, decisions, found, inf if least is None else least.makespan)
     apart = None if levels is None else _waiting(team, levels, least)
+    if made is None and (levels is None or levels.conflicts):
+        search.dear.append((team, found))
     if apart is not None:
         made = apart if made is None else _better(apart, made)
-    elif made is None:
-        search.dear.append((team, found))
-    if made is not None and made.makespan > DEAR * found.makespan:
+    if made is not None and made.makespan > _WORTH_SIGNALS * found.makespan:
         made = signalled(team, found, _better(made, best).makespan) or made
     least = best if made is None else _better(made, best)
     made = starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
@@ -395,11 +398,13 @@ def _waiting(team: Team, levels: Traffic, best: Plan | None) -> Plan | None:
     """Return a plan in which robots wait where levels do not keep them apart; None if none is better."""
     if not levels.conflicts:
         return levels.plan
+    made: Plan | None = None
     with suppress(TooNearError):
         made = separated(team, levels.plan)
-        if made.makespan <= _FAIR * levels.plan.makespan:
+        if made.makespan <= DEAR * levels.plan.makespan:
             return made
-    return signalled(team, levels.plan, inf if best is None else best.makespan)
+    least = best if made is None else _better(made, best)
+    return signalled(team, levels.plan, inf if least is None else least.makespan) or made
 
 
 def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:
