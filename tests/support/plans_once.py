@@ -49,7 +49,8 @@ def remember_plugins() -> None:
 def _remembered_plugins(extra: Mapping[str, object] | None = None, **options: bool) -> Plugins:
     if extra or plugins.entry_points is not entry_points:
         return load_plugins(extra=extra, **options)
-    return _loaded(tuple(sys.path), **options)
+    folders = map(os.path.abspath, sys.path)
+    return _loaded(tuple(each for each in folders if any(Path(each).glob("*.*-info"))), **options)
 
 
 @cache
