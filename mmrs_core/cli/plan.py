@@ -86,6 +86,7 @@ def plan(
         return 0
     folder = folder_of(project)
     file = output or model_in(folder, "behaviour") or folder / "behaviour.xmi"
+    next(file.parent.iterdir(), None)  # a folder that does not exist is told before a long search
     require_writable(stages, file, "" if force else "--force replaces it")
     places = places_in(schema_location, session.contributions.languages, file)
     try:

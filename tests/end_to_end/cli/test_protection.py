@@ -35,6 +35,15 @@ def test_plan_does_not_overwrite_an_input(mmrs, pool, input):
     assert contents(pool) == before
 
 
+def test_plan_names_a_folder_that_does_not_exist_before_it_searches(mmrs, pool, tmp_path, monkeypatch):
+    searched = []
+    monkeypatch.setattr("mmrs_core.planning.planner.plan", lambda *_, **__: searched.append(1))
+    code, _, err = mmrs("plan", pool, "--time-limit", "600", "-o", tmp_path / "none" / "x.xmi")
+    assert code == 3
+    assert f"{tmp_path / 'none'}: no such file or directory" in err
+    assert not searched
+
+
 @pytest.mark.parametrize("link", [os.symlink, os.link])
 def test_plan_does_not_overwrite_an_input_through_a_link(mmrs, pool, tmp_path, link):
     link(pool / "mission.xmi", tmp_path / "out.xmi")
