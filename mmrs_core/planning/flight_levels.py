@@ -209,7 +209,7 @@ class _Choice:
         self._seconds = np.array([_longer(leg.ways[0], way) for leg in self._legs for way in leg.ways])
         self._ends = np.array([each.steps[-1].end if each.steps else 0.0 for each in plan.robots])
         flights = {(leg.robot, leg.flight): None for leg in self._legs}
-        self._spare = np.array([max(0.0, [*spare.get(name, ()), 1e9][flight]) for name, flight in flights])
+        self._spare = np.array([max(0.0, [*spare.get(name, ()), inf][flight]) for name, flight in flights])
         places = {flight: len(legs) + k for k, flight in enumerate(flights)}
         mine = np.array([places[leg.robot, leg.flight] for leg in self._legs])[self._leg]
         self._limited = np.stack([self._robot, mine], axis=1)
@@ -285,7 +285,7 @@ class _Choice:
         random: np.random.Generator,
     ) -> int | None:
         """Return the way that is to replace another one of its leg."""
-        ways = np.nonzero(wrong[self._leg] & ~barred & np.isfinite(self._seconds))[0]
+        ways = np.nonzero(wrong[self._leg] & ~barred)[0]
         own = chosen[self._leg[ways]]
         ways, own = (each[ways != own] for each in (ways, own))
         if not len(ways):
