@@ -18,7 +18,7 @@ from plain_scenes import (
 from sound_plans import complaints, sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning import planner
+from mmrs_core.planning import deconfliction
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
@@ -465,7 +465,7 @@ def test_robots_stay_at_home_where_others_keep_apart_for_less_without_them(monke
     idle = [each.idle for each in found.robots if not each.steps]
     assert idle
     assert all("stays at home, so that robots keep apart" in each for each in idle)
-    monkeypatch.setattr(planner, "_PARTS", ())
+    monkeypatch.setattr(deconfliction, "_PARTS", ())
     assert found.makespan < 0.95 * plan(whole).makespan
 
 

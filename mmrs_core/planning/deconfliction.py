@@ -1,0 +1,169 @@
+"""Keeps the robots of a plan apart by whatever costs least: waits, flight levels, signals or another team."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from math import ceil, inf
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.assembly import planned
+from mmrs_core.planning.exchanging import levelled
+from mmrs_core.planning.jobs import Job
+from mmrs_core.planning.schedule import Decisions
+from mmrs_core.planning.separation import (
+    TooNearError,
+    Traffic,
+    distance_to_keep,
+    recharges,
+    separated,
+    stacked_altitudes,
+    starting_later,
+)
+from mmrs_core.planning.signalling import DEAR, signalled
+from mmrs_core.planning.team import Team
+from mmrs_core.scene import Plan, Scene
+
+_PARTS = (0.75, 0.5, 0.25)
+"""Parts of a team that are tried where all of it together can only be kept apart at a cost."""
+
+_SPARE = (0.15, 0.08)
+"""Parts of each charge that are then kept for flying higher, where robots recharge."""
+
+_WORTH_SIGNALS = 1.1
+"""Times the mission time without separation from which on signals are sought beside levels."""
+
+_MOST_SIGNALLED = 2
+"""Plans, the shortest first, whose robots are then kept apart by signals; others only if there is no plan."""
+
+
+def kept_apart(
+    team: Team,
+    jobs: Sequence[Job],
+    decisions: Decisions,
+    found: Plan,
+    best: Plan | None,
+    dear: list[tuple[Team, Plan]],
+) -> Plan:
+    """Return a plan as its robots keep apart: by waits, flight levels and signals, or by later starts.
+
+    What is not better than the best so far is not sought any further.
+    """
+    made, refusal = None, None
+    try:
+        made = separated(team, found)
+        if made.makespan <= DEAR * found.makespan:
+            return made
+    except TooNearError as error:
+        refusal = error
+    least = best if made is None else better(made, best)
+    levels = levelled(team, jobs, decisions, found, inf if least is None else least.makespan)
+    apart = None if levels is None else _waiting(team, levels, least)
+    if made is None and (levels is None or levels.conflicts):
+        dear.append((team, found))
+    if apart is not None:
+        made = apart if made is None else better(apart, made)
+    if made is not None and made.makespan > _WORTH_SIGNALS * found.makespan:
+        made = signalled(team, found, better(made, best).makespan) or made
+    least = best if made is None else better(made, best)
+    made = starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
+    if made is None:
+        raise refusal or InfeasibleError("no plan")
+    return made
+
+
+def _waiting(team: Team, levels: Traffic, best: Plan | None) -> Plan | None:
+    """Return a plan in which robots wait where levels do not keep them apart; None if none is better."""
+    if not levels.conflicts:
+        return levels.plan
+    made: Plan | None = None
+    with suppress(TooNearError):
+        made = separated(team, levels.plan)
+        if made.makespan <= DEAR * levels.plan.makespan:
+            return made
+    least = best if made is None else better(made, best)
+    return signalled(team, levels.plan, inf if least is None else least.makespan) or made
+
+
+def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:
+    made = planned(team, jobs, decisions)
+    return None if made is None or better(made, best) is best else made
+
+
+def alternatives(team: Team, found: Plan | None, error: TooNearError | None) -> Iterator[tuple[Team, bool]]:
+    """Yield (team, whether its robots fly one after the other) that may help where robots come too near.
+
+    Robots may keep some of each charge for levels, transit one above the other, stay at home in part, keep
+    away from where others stand at home, end at home where they need not, or take turns.
+    """
+    altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
+    charging = any(
+        each.kinematics.recharge is not None and each.charge < inf for each in team.pilots.values()
+    )
+    if charging if found is None else recharges(found):
+        yield from ((team.changed(team.homebound, spare=each), False) for each in _SPARE)
+    if altitudes:
+        yield team.changed(team.homebound, altitudes=altitudes), False
+    for smaller in _smaller(team, found) if found is not None else ():
+        yield smaller, False
+        if altitudes:
+            yield smaller.changed(team.homebound, altitudes=altitudes), False
+    if error is None:
+        return
+    if error.at_home:
+        yield team.changed(team.homebound, from_homes=least), False
+    before = team.scene.robots
+    for names in dict.fromkeys((error.robots, frozenset(team.pilots))):
+        robots = tuple(replace(robot, return_home=True) if robot.name in names else robot for robot in before)
+        if robots != before:
+            yield team.changed(None, robots=robots, from_homes=least), False
+    everyone = frozenset(team.pilots)
+    yield team.changed(everyone), True
+    yield team.changed(everyone, from_homes=least), True
+
+
+def _smaller(team: Team, found: Plan) -> Iterator[Team]:
+    """Yield teams of which only those robots leave home that have most to do in a plan."""
+    busiest = sorted((each for each in found.robots if each.steps), key=lambda each: -each.busy)
+    for part in _PARTS:
+        names = {each.robot for each in busiest[: ceil(part * len(busiest))]}
+        smaller = team.at_home(frozenset(team.pilots) - names)
+        if not any(smaller.shortfalls()):
+            yield smaller
+
+
+def unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
+    """Yield which robots return home in the plan of another team though the mission does not ask for it."""
+    before = {robot.name: robot.return_home for robot in team.scene.robots}
+    returning = {robot.name for robot in other.scene.robots if robot.return_home and not before[robot.name]}
+    names = [each.robot for each in made.robots if each.robot in returning and each.steps]
+    if names:
+        ends = "returns home unasked" if len(names) == 1 else "return home unasked"
+        yield f"{', '.join(names)} {ends}, so that robots on the ground keep apart"
+
+
+def best_signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | None) -> Plan | None:
+    """Return the best plan, or a better one in which robots wait for signals of each other to keep apart."""
+    plans = {
+        round(each.makespan, 1): (team, each) for team, each in dear if team.scene.robots == scene.robots
+    }
+    ordered = [plans[makespan] for makespan in sorted(plans)]
+    last = reversed(ordered[_MOST_SIGNALLED:])
+    for tried, (team, each) in enumerate([*ordered[:_MOST_SIGNALLED], *last]):
+        if found is not None and tried >= _MOST_SIGNALLED:
+            break
+        told = signalled(team, each, inf if found is None else found.makespan)
+        found = found if told is None else better(told, found)
+    return found
+
+
+def better(plan: Plan, best: Plan | None) -> Plan:
+    """Return the plan that ends sooner, or in which robots are less busy; otherwise the best so far."""
+    return plan if best is None or _cost(plan) < _cost(best) else best
+
+
+def _cost(made: Plan) -> tuple[float, float]:
+    """Return (makespan, seconds of all robots), rounded so that only a real gain counts."""
+    return (round(made.makespan, 3), round(sum(each.busy for each in made.robots), 3))
