@@ -74,24 +74,27 @@ class Shunting:
     mode_control: ModeControl
     radius: float
 
-    def face(self, place: Place, near: float) -> None:
+    def face(self, place: Place, near: float) -> bool:
         """Turn a vehicle that stands to a place, unless it gets there without: by one curve, or on its own.
 
         Args:
             place: that it is to drive to.
             near: metres from it within which it need not look there.
 
+        Returns:
+            Whether it has turned.
+
         Raises:
             FaultError: it does not turn so far.
         """
         if not self.radius or self.telemetry.speed() > self.link.profile.still:
-            return
+            return False
         if abs(self._aside(place)) <= ASIDE_DEGREES or self._from(place) > self._near(place):
-            return
+            return False
         begun, forwards = self.telemetry.here(), 1.0
         for _ in range(MOST_ARCS):
             if self._from(place) <= near or abs(self._aside(place)) <= FACING_DEGREES:
-                return
+                return True
             self._drive_arc(place, begun, forwards)
             forwards = -forwards
         raise FaultError(NO_PROGRESS, f"still looks {abs(self._aside(place)):.0f}° past {place}")

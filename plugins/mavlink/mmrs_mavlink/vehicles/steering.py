@@ -96,7 +96,7 @@ class Steering:
         """Go straight to a place; `through`: without a stop there.
 
         One that steers like a car and stands there already stays: to a target that it has passed, a Rover
-        drives round by several metres.
+        drives round by several metres. One that has come to a stop beside its target turns to it once more.
 
         Raises:
             FaultError: it does not get there.
@@ -128,6 +128,8 @@ class Steering:
                     NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
                 )
             lost = advance.ceased(resend)
+            if lost and self._shunting.face(place, self._acceptance):
+                advance = Advance(self._telemetry, place)
             if lost or self._must_turn(look):
                 self._steer(place, look)
         self._unpoint(look)

@@ -1,7 +1,7 @@
 """Rovers that steer like cars turn to their target within their turning radius before they set out."""
 
 from dataclasses import replace
-from math import cos, degrees, hypot, radians, sin
+from math import cos, degrees, hypot, inf, radians, sin
 from types import SimpleNamespace
 
 import pytest
@@ -10,9 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_mavlink.profiles.pacing import ASIDE_DEGREES, SHUNTS_WITHIN
+from mmrs_mavlink.profiles.profile import Timing
 from mmrs_mavlink.program import Geographic, Local, Travel
 from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.vehicles.shunting import Shunting
+from mmrs_mavlink.vehicles.steering import Steering
 from mmrs_runtime.controllers.geodesy import bearing, distance, metres_per_degree
 
 HOME = Geographic(42.37, 13.35, 0.0)
@@ -161,3 +163,36 @@ def test_a_rover_that_stands_at_its_target_is_sent_there_only_if_it_turns_on_its
     away, kinds = sent_to(180.0, 0.4, radius)
     assert away <= 0.5
     assert ("SET_POSITION_TARGET_GLOBAL_INT" in kinds) == is_sent
+
+
+class Passing(Car):
+    """One that drives straight on until it is abreast of its target, and stays there, as an ArduRover may."""
+
+    def __init__(self, place: Local) -> None:
+        super().__init__(1.2, 0.0)
+        self.place, self.nearest = place, inf
+        self.profile = SimpleNamespace(still=0.3, timing=Timing())
+
+    def aim(self, *_: object) -> None:
+        self.wanted, self.sent, self.nearest = (0.5, 0.0), inf, distance(self.here(), self.place)
+
+    def unheard(self) -> bool:
+        return False
+
+    def _roll(self, step: float) -> None:
+        away = distance(self.here(), self.place)
+        if self.sent == inf and away > self.nearest:
+            self.wanted = (0.0, 0.0)
+        self.nearest = min(self.nearest, away)
+        super()._roll(step)
+
+
+def test_a_rover_that_stops_beside_its_target_turns_to_it():
+    place = Local(12.0, 0.9, 0.0)
+    car = Passing(place)
+    nothing = SimpleNamespace(arm=lambda: None, pace_next=lambda _: None, pace=lambda _, again: None)
+    guidance = SimpleNamespace(aim=car.aim, has_settled=lambda _: False)
+    control = SimpleNamespace(**vars(nothing), check=car.check, guidance=guidance)
+    Steering(car, car, control, 0.5, car.radius).go_to(place, 1.0, None, False)
+    assert distance(car.here(), place) <= 0.5
+    assert car.seconds < 60.0
