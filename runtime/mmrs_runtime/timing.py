@@ -18,9 +18,6 @@ BESIDE = 0.5
 LEFT = 0.8
 """Share of its thrust that is left where a robot has stopped."""
 
-RESTING = 0.3
-"""Metres from its set-point within which a robot that trails it is as slow as one that stands still."""
-
 
 @dataclass(frozen=True, slots=True)
 class LegTiming:
@@ -42,7 +39,8 @@ class LegTiming:
         acceptance: metres from a target at which it may count as reached: so short a leg may take no time,
             and another one may be so much longer that begins there; so much shorter, too, without `still`.
         still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
-        settling: seconds from the end of a leg until it is reported as done; negative: before its end.
+        settling: seconds from the end of a leg until it is reported as done; negative: before its end. Of one
+            that trails a set-point, those in all for which it is within the acceptance.
         starting: seconds of the settling that pass as it sets out from a stop.
         lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
             after some time, as it builds up the thrust for it; and the time constant of that, seconds.
@@ -57,8 +55,6 @@ class LegTiming:
         trailing: seconds by which it trails a set-point that moves along the leg at the commanded speed; what
             is left as that stops becomes less by e in each. 0: it follows none.
         swinging: seconds in which it comes to thrust against its drag then, and so goes beyond its target.
-        waiting: seconds within the acceptance, in all, after which it counts as settled then, however it
-            moves.
         spread: by which share legs take longer or shorter than expected.
         reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
@@ -98,7 +94,6 @@ class LegTiming:
     returning: float = 0.63
     trailing: float = 0.0
     swinging: float = 1.0
-    waiting: float = inf
     spread: float = 0.0
     reporting: float = 0.0
     shunts_within: float = inf
@@ -131,15 +126,14 @@ class LegTiming:
     def _come_to_rest(self, fastest: float, seconds: float) -> float:
         """Return the seconds from the stop of a set-point until a robot that trails it is settled there.
 
-        It comes near, goes beyond, and back; it need not be still once it has been near for long enough.
+        It comes near, goes beyond, and back, until it has been near for long enough; it need not be still.
         While it turns back, its speed changes by what it comes back at in the seconds by which it trails.
         """
         behind = self.trailing * fastest * (1.0 - exp(-seconds / self.trailing))
         beyond = self.overshoot * fastest * (1.0 - exp(-seconds / self.swinging))
-        still = self.settling + self.trailing * log(max(1.0, behind / RESTING)) + beyond / self.returning
         near = self.trailing * log(max(1.0, behind / self.acceptance))
         away = 2.0 * sqrt(2.0 * max(0.0, beyond - self.acceptance) * self.trailing / self.returning)
-        return min(still, near + away + self.waiting)
+        return near + away + self.settling
 
     @property
     def slows_down(self) -> bool:

@@ -193,13 +193,12 @@ PX4_COPTER = AutopilotTiming(
         corner_radius=0.0,
         passes=False,
         acceptance=1.5,
-        settling=1.1,
+        settling=4.35,
         keeps_acceleration=False,
         overshoot=0.34,
         returning=0.4,
         trailing=1.05,
         swinging=3.7,
-        waiting=4.35,
         spread=0.5,
         reporting=10.0,
     ),
@@ -254,7 +253,7 @@ and since MPC_XY_VEL_I_ACC has come to hold it against its drag by then, it goes
 left slowly. The overshoot and its time constant are those of the drag of its simulation, 1 N per m/s and
 kilogram, from which 0.9 m at 3 m/s, 1.2 to 1.9 m at 5 m/s and 2.5 m at 8 m/s follow, and were measured.
 It counts as settled once it has been within 1.5 m for 4 s in all, since it may estimate all that time that
-it moves.
+it moves, or that it stands still before.
 It makes no more than 9.8 m/s there. A first leg begins 1.8 s late, since OFFBOARD wants set-points before
 (guiding).
 

@@ -52,8 +52,11 @@ class Guidance(Protocol):
         """
         ...
 
-    def has_settled(self, place: Place) -> bool:
-        """Return whether the vehicle comes no nearer to a place that it aims at; asked with each position."""
+    def has_settled(self, place: Place) -> bool | None:
+        """Return whether the vehicle has settled at a place that it aims at; None: where it stands still.
+
+        It is asked with each position.
+        """
         ...
 
     def take_off(self, height: float) -> tuple[float, ...]:
@@ -108,9 +111,8 @@ class ArduPilotGuidance:
             command(self._link, mavlink.MAV_CMD_CONDITION_YAW, degrees(yaw) % 360.0)
             self._yaw = yaw
 
-    def has_settled(self, place: Place) -> bool:
-        """Return False: it comes to its targets."""
-        return False
+    def has_settled(self, place: Place) -> None:
+        """Return None: it comes to a stop at its targets."""
 
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF."""

@@ -213,8 +213,8 @@ class Steering:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""
         here = self._telemetry.here()
         away = distance(here, place)
-        if self._mode_control.guidance.has_settled(place):
-            return True
+        if (settled := self._mode_control.guidance.has_settled(place)) is not None:
+            return settled
         if away > self._acceptance:
             return False
         if self._telemetry.speed() <= self._link.profile.still:

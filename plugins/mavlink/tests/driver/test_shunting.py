@@ -191,7 +191,7 @@ def test_a_rover_that_stops_beside_its_target_turns_to_it():
     place = Local(12.0, 0.9, 0.0)
     car = Passing(place)
     nothing = SimpleNamespace(arm=lambda: None, pace_next=lambda _: None, pace=lambda _, again: None)
-    guidance = SimpleNamespace(aim=car.aim, has_settled=lambda _: False)
+    guidance = SimpleNamespace(aim=car.aim, has_settled=lambda _: None)
     control = SimpleNamespace(**vars(nothing), check=car.check, guidance=guidance)
     Steering(car, car, control, 0.5, car.radius).go_to(place, 1.0, None, False)
     assert distance(car.here(), place) <= 0.5

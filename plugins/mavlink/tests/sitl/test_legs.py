@@ -98,7 +98,7 @@ def test_a_px4_that_trails_a_set_point_is_near_as_soon_as_is_planned(length, spe
     figures = PX4_MULTICOPTER.pacing.step
     body = Body(figures, (0.0, 0.0, 10.0), speed=12.0)
     seconds = near = 0.0
-    while near < figures.waiting:
+    while near < figures.settling:
         seconds += STEP
         body.target = (min(length, speed * seconds), 0.0, 10.0)
         body.advance(STEP)
