@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.walk import successors
 from mmrs_core.contributions.rules import MoveKind, most_specific
-from mmrs_core.scene.headings import bearing, turn_at
+from mmrs_core.scene.headings import turn_at
 from mmrs_core.scene.passing import SHORTEST_RUN, passed
 
 if TYPE_CHECKING:
@@ -96,8 +96,12 @@ class Passages:
         """
         look = move.heading if self._stops else None
         seen = None if look is None else look.seen_from(path[-1])
-        along = bearing(path[-2], path[-1]) if seen is None and len(path) > 1 else seen
-        return before if along is None else along
+        if seen is not None:
+            return seen
+        rates = self.kinematics(move).rates(move.speed)
+        for leg in pairwise(path):
+            before = rates.faces(*leg, before)
+        return before
 
     def push(self, move: Move, path: tuple[Position, ...], before: Push | None) -> Push | None:
         """Return the push that a robot has after a move along a path; `before`: that with which it began."""

@@ -281,7 +281,8 @@ class Kinematics:
     def rates(self, speed: float | None = None) -> Rates:
         """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""
         wanted = self.cruise if speed is None else min(max(speed, self.slowest), self.fastest)
-        within = self.timing.shunts_within * self.turning_radius if self.turning_radius > 0.0 else inf
+        curves, seconds = self.timing.shunts_within * self.turning_radius, self.timing.shunts_for
+        within = max(curves, seconds * wanted) if self.turning_radius > 0.0 else inf
         circling = 2.0 * pi * self.turning_radius / wanted if wanted > 0.0 else inf
         return Rates(
             wanted,

@@ -8,13 +8,13 @@ they report it as done is settling. What they save where they pass a corner is i
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import atan2, ceil, cos, dist, exp, hypot, inf, log, pi, radians, sin, sqrt
+from math import atan2, ceil, cos, dist, exp, hypot, inf, pi, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.headings import bearing, turn
 from mmrs_core.scene.primitives import Position
 from mmrs_runtime.s_curves import largest_speed, reached, speeding, stop_to_stop
-from mmrs_runtime.timing import IDEAL, LegTiming, split
+from mmrs_runtime.timing import ASTERN, IDEAL, LegTiming, split
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -28,12 +28,11 @@ NOTICING = 0.5
 ANSWERING = 0.2
 """Seconds after which a device has answered, at most."""
 
-ASTERN, KEPT_UP, UNSURE = 173.0, 0.55, 30.0
-"""Degrees aside up to which a target stays, since vehicles drift; logarithm of a lag that is made up under
-way; and degrees by which a robot may look elsewhere than along its last leg."""
+UNSURE = 30.0
+"""Degrees by which a robot may look elsewhere than is expected."""
 
-ARC = 0.5
-"""Radians of an arc of shunting at most: it leads half of the turning radius from where the robot stands."""
+ARC, FACING = 0.63, 0.09
+"""Radians of an arc of shunting at most, with what it rolls on; and how exactly a robot shunts."""
 
 Leg: TypeAlias = tuple[Position, Position]
 """Where a straight leg begins and ends."""
@@ -57,6 +56,11 @@ class MoveSeconds(NamedTuple):
     def exactly(seconds: float) -> MoveSeconds:
         """Return what is known to the second."""
         return MoveSeconds(seconds, seconds, seconds)
+
+
+def arcs(aside: float) -> int:
+    """Return the number of arcs by which a robot shunts to a place that is aside by so much, degrees."""
+    return ceil((radians(aside) - FACING) / ARC)
 
 
 def bounded(expected: float, timing: LegTiming) -> MoveSeconds:
@@ -207,33 +211,39 @@ class Rates:
             return 0.0
         if self.bound > 0:
             astern = 180.0 if facing is None else min(180.0, abs(turn(facing, along)) + UNSURE)
-            late = max(self.circling, (1.0 + self.timing.spread) * self._behind(astern))
+            late = max(self.circling, (1.0 + self.timing.spread) * self.timing.turning_back(astern))
             late += self.timing.hesitating if astern >= ASTERN else 0.0
-            return self.shunting if away <= self.shunts_within else late
+            return (1.0 + self.timing.spread) * self.shunting if away <= self.shunts_within else late
         if facing is None and not self.rounds:
             return self.shunting if away <= self.shunts_within else self.circling
         aside = 0.0 if facing is None else abs(turn(facing, along))
         if aside <= (self.timing.aside if self.circling or self.halt else self.timing.pivots):
             return 0.0
-        if self.rounds and away > self.shunts_within * sin(radians(min(90.0, aside))):
+        if self._drives_round(away, aside):
             radius = self.circling * self.cruise / (2.0 * pi)
             round = (_rounded(away, radians(aside), radius) - away) / self.cruise
-            return max(round, self._behind(aside))
-        driving = self.shunting - self.halt * ceil(pi / ARC)
-        return driving * aside / 180.0 + self.halt * ceil(radians(aside) / ARC)
+            return max(round, self.timing.turning_back(aside))
+        driving = self.shunting - self.halt * arcs(180.0)
+        return driving * aside / 180.0 + self.halt * arcs(aside)
 
-    def _behind(self, aside: float) -> float:
-        """Return the seconds that a leg takes longer whose target goes ahead while the robot turns round.
+    def _drives_round(self, away: float, aside: float) -> bool:
+        """Return whether it drives round to what is so far away, metres, and so far aside, degrees."""
+        return self.rounds and away > self.shunts_within * sin(radians(min(90.0, aside)))
 
-        It turns by the acceleration to the side that it wants, which becomes less with the sine of the angle:
-        until it looks there, the target gains v / c · -2 ln cos (angle / 2) by a rate c of its turns. At the
-        end it makes that up by and by.
+    def faces(self, start: Position, end: Position, facing: float | None) -> float | None:
+        """Return where it looks once it has stopped at the end of a leg, degrees clockwise from north.
 
         Args:
-            aside: degrees from where it looks.
+            start, end: of the leg.
+            facing: where it looks before; None: not known.
         """
-        lag = -log(cos(radians(min(ASTERN, aside)) / 2.0))
-        return self.timing.closing * max(0.0, lag - KEPT_UP)
+        along = bearing(start, end)
+        if along is None or facing is None or not self.circling:
+            return facing if along is None else along
+        aside = turn(facing, along)
+        if not self._drives_round(dist(start[:2], end[:2]), abs(aside)):
+            return along
+        return (along + self.timing.askew(aside, self.from_stop_to_stop(start, end))) % 360.0
 
     def rise(self, metres: float) -> float:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""

@@ -14,7 +14,6 @@ from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.languages.uris import BEHAVIOUR
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
-from mmrs_core.scene.headings import bearing
 from mmrs_core.scene.timing import MoveSeconds, noticing
 
 if TYPE_CHECKING:
@@ -183,7 +182,7 @@ def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics,
         least += soonest.eased(*leg, entering) if move.flows else soonest.from_stop_to_stop(*leg, push=push)
         expected += rates.from_stop_to_stop(*leg, facing, push)
         most += latest.from_stop_to_stop(*leg, facing, push)
-        facing, push, entering = bearing(*leg), rates.push(*leg, push), 0.0
+        facing, push, entering = rates.faces(*leg, facing), rates.push(*leg, push), 0.0
     return MoveSeconds(least, expected, most)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, hypot, inf, log, sqrt
+from math import cos, exp, hypot, inf, log, radians, sqrt
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
@@ -17,6 +17,14 @@ BESIDE = 0.5
 
 LEFT = 0.8
 """Share of its thrust that is left where a robot has stopped."""
+
+ASTERN, KEPT_UP = 174.5, 0.55
+"""Degrees aside up to which a target stays, since vehicles drift; logarithm of a lag that is made up under
+way."""
+
+SWUNG, STRAIGHTENING = 0.14, 28.0
+"""Share of a turn by which a car looks too far round at first, and seconds in which that becomes less by e
+while it makes up for its lag."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +67,7 @@ class LegTiming:
         reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
             spot: to a place abreast of it; by one curve, it gets onto longer legs and to places more ahead.
+        shunts_for: seconds up to which a leg may be shunted for in the same way, if that is longer.
         aside: degrees from where it looks within which it sets out to a place without either.
         pivots: degrees from where it looks beyond which one that turns on the spot does so before it sets
             out; up to these it turns while it sets out, which is not counted.
@@ -97,6 +106,7 @@ class LegTiming:
     spread: float = 0.0
     reporting: float = 0.0
     shunts_within: float = inf
+    shunts_for: float = 0.0
     aside: float = 0.0
     pivots: float = inf
     closing: float = 0.0
@@ -134,6 +144,30 @@ class LegTiming:
         near = self.trailing * log(max(1.0, behind / self.acceptance))
         away = 2.0 * sqrt(2.0 * max(0.0, beyond - self.acceptance) * self.trailing / self.returning)
         return near + away + self.settling
+
+    def turning_back(self, aside: float) -> float:
+        """Return the seconds that a leg takes longer whose target goes ahead while the robot turns round.
+
+        It turns by the acceleration to the side that it wants, which becomes less with the sine of the angle:
+        until it looks there, the target gains v / c · -2 ln cos (angle / 2) by a rate c of its turns. At the
+        end it makes that up by and by.
+
+        Args:
+            aside: degrees from where it looks.
+        """
+        lag = -log(cos(radians(min(ASTERN, aside)) / 2.0))
+        return self.closing * max(0.0, lag - KEPT_UP)
+
+    def askew(self, turned: float, seconds: float) -> float:
+        """Return by how many degrees it looks beside a leg at its end that it has turned to.
+
+        It makes up for what it is beside the leg as slowly as for its lag, so that it comes in at an angle.
+
+        Args:
+            turned: degrees by which it has turned, clockwise.
+            seconds: of the leg, without the turn.
+        """
+        return SWUNG * turned * exp(-seconds / STRAIGHTENING) if self.closing else 0.0
 
     @property
     def slows_down(self) -> bool:

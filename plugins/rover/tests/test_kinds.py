@@ -34,11 +34,15 @@ def test_tracks_turn_on_the_spot(rover, field):
 
 def test_half_a_turn_by_shunting_is_a_half_circle_and_halts_between_its_arcs(rover, field):
     found = kinematics(rover(turningRadius=1.5), field)
-    assert found.shunting == pytest.approx(pi * 1.5 / 0.4 + 7 * 4.5)
+    assert found.shunting == pytest.approx(pi * 1.5 / 0.4 / 0.45 + 5 * 3.2)
 
 
 @pytest.mark.parametrize(
-    ("radius", "angle", "seconds"), [(1.2, 56.0, 14.1), (1.2, 168.0, 36.2), (2.0, 135.0, 44.8)]
+    ("radius", "angle", "seconds"),
+    [
+        *((1.2, 45.0, 11.0), (1.2, 56.0, 14.1), (1.2, 60.0, 13.8), (1.2, 75.0, 14.5), (1.2, 100.0, 21.9)),
+        *((1.2, 140.0, 30.2), (1.2, 168.0, 36.2), (2.0, 135.0, 44.8)),
+    ],
 )
 def test_a_turn_by_shunting_takes_about_as_long_as_was_measured(rover, field, radius, angle, seconds):
     found = kinematics(rover(turningRadius=radius), field)

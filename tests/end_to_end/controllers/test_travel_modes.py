@@ -64,13 +64,13 @@ def test_a_vehicle_climbs_descends_and_turns_no_faster_than_its_type(told, kind,
     ]
 
 
-@pytest.mark.parametrize(("was", "found"), [(0.0, 120.0), (60.0, 60.0)])
+@pytest.mark.parametrize(("was", "found"), [(0.0, 115.0), (60.0, 60.0)])
 def test_a_rover_turns_on_the_spot_to_what_is_behind_it_unless_its_owner_has_set_from_which_angle(
     told, was, found
 ):
     parameters, said = told(Travel(), "rover", parameters={"WP_PIVOT_ANGLE": was})
     assert parameters["WP_PIVOT_ANGLE"] == found
-    changed = "WP_PIVOT_ANGLE = 120, which was 0: it turns on the spot where it turns by over 120°"
+    changed = "WP_PIVOT_ANGLE = 115, which was 0: it turns on the spot where it turns by over 115°"
     assert said == ([] if was else [changed])
 
 

@@ -110,6 +110,17 @@ def test_a_simulated_car_shunts_as_slowly_as_real_ones(tmp_path):
     assert sum(seconds for _, seconds in found.legs.values()) == pytest.approx(55.7, rel=0.1)
 
 
+def test_a_simulated_car_takes_as_long_to_what_is_behind_it_as_real_ones(tmp_path):
+    """An ArduRover took 20.1, 34.6, 29.2 and 30.4 s."""
+    there_and_back = tuple((0.0, north, 0.0) for north in (25.0, 0.0, 25.0, 0.0))
+    routes(Route("Badger", ROVER, there_and_back, 1.5))(tmp_path / "models")
+    simulate_steps(tmp_path / "models")
+    (found,) = compared(tmp_path / "models")
+    assert found.whole
+    for (_, seconds), real in zip(found.legs.values(), (20.1, 34.6, 29.2, 30.4), strict=True):
+        assert seconds == pytest.approx(real, rel=0.1)
+
+
 @recorded
 @pytest.mark.parametrize("name", MISSIONS)
 def test_a_simulated_mission_takes_what_a_recorded_one_did(name, tmp_path):

@@ -262,13 +262,13 @@ def test_a_car_drives_round_by_a_curve_and_a_tangent(metres, aside, radius):
 
 
 def test_a_car_shunts_to_what_is_near_and_aside_by_whole_arcs():
-    rover = Rates(
-        1.0, 1.0, 1.0, LegTiming(1.0, aside=15.0), shunting=36.0, halt=4.0, rounds=True, shunts_within=10.0
-    )
+    timing = LegTiming(1.0, aside=15.0, spread=0.1)
+    rover = Rates(1.0, 1.0, 1.0, timing, shunting=36.0, halt=4.0, rounds=True, shunts_within=10.0)
     assert rover.turning(NONE, east(5.0, NONE), 90.0) == 0.0
     assert rover.turning(NONE, east(5.0, NONE), 76.0) == 0.0
-    assert rover.turning(NONE, east(5.0, NONE), 0.0) == pytest.approx(4.0 * 4.0 + 4.0)
+    assert rover.turning(NONE, east(5.0, NONE), 0.0) == pytest.approx(8.0 + 3 * 4.0)
     assert rover.turning(NONE, east(5.0, NONE), 270.0) == pytest.approx(36.0)
+    assert rover.latest().turning(NONE, east(5.0, NONE), 0.0) == pytest.approx(39.6)
     assert rover.turning(NONE, east(11.0, NONE), 0.0) < 4.0
 
 

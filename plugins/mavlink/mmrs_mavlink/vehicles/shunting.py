@@ -20,7 +20,7 @@ from mmrs_runtime.controllers.geodesy import bearing, offset, turn
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link, Message
-from ..profiles.pacing import ASIDE_DEGREES, SHUNTS_WITHIN
+from ..profiles.pacing import ASIDE_DEGREES, SHUNTS_FOR, SHUNTS_WITHIN
 from ..program import Place
 from .mode_control import ModeControl
 from .telemetry import Telemetry
@@ -74,12 +74,13 @@ class Shunting:
     mode_control: ModeControl
     radius: float
 
-    def face(self, place: Place, near: float) -> bool:
+    def face(self, place: Place, near: float, speed: float) -> bool:
         """Turn a vehicle that stands to a place, unless it gets there without: by one curve, or on its own.
 
         Args:
             place: that it is to drive to.
             near: metres from it within which it need not look there.
+            speed: metres per second at which it is to drive.
 
         Returns:
             Whether it has turned.
@@ -89,7 +90,7 @@ class Shunting:
         """
         if not self.radius or self.telemetry.speed() > self.link.profile.still:
             return False
-        if abs(self._aside(place)) <= ASIDE_DEGREES or self._from(place) > self._near(place):
+        if abs(self._aside(place)) <= ASIDE_DEGREES or self._from(place) > self._near(place, speed):
             return False
         begun, forwards = self.telemetry.here(), 1.0
         for _ in range(MOST_ARCS):
@@ -128,9 +129,10 @@ class Shunting:
                 return
             self.mode_control.check()
 
-    def _near(self, place: Place) -> float:
+    def _near(self, place: Place, speed: float) -> float:
         """Return how far away, in metres, the vehicle gets to such a place by one curve and straight on."""
-        return SHUNTS_WITHIN * self.radius * sin(radians(min(90.0, abs(self._aside(place)))))
+        abreast = max(SHUNTS_WITHIN * self.radius, SHUNTS_FOR * speed)
+        return abreast * sin(radians(min(90.0, abs(self._aside(place)))))
 
     def _from(self, place: Place) -> float:
         return hypot(*offset(place, self.telemetry.here())[:2])

@@ -107,7 +107,7 @@ class Steering:
         if self._shunting.radius and self._arrived(place, None):
             self._unpoint(look)
             return
-        self._shunting.face(place, self._acceptance)
+        self._shunting.face(place, self._acceptance, speed or 0.0)
         begun = self._telemetry.here()
         way = distance(begun, place)
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
@@ -128,7 +128,7 @@ class Steering:
                     NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
                 )
             lost = advance.ceased(resend)
-            if lost and self._shunting.face(place, self._acceptance):
+            if lost and self._shunting.face(place, self._acceptance, speed or 0.0):
                 advance = Advance(self._telemetry, place)
             if lost or self._must_turn(look):
                 self._steer(place, look)

@@ -124,7 +124,7 @@ def test_a_car_looks_at_its_target_or_is_there_and_has_kept_within_its_turning_r
 ):
     car = Car(radius, heading)
     place = Local(metres * cos(radians(angle)), metres * sin(radians(angle)), 0.0)
-    Shunting(car, car, car, radius).face(place, 0.5)
+    Shunting(car, car, car, radius).face(place, 0.5, 1.0)
     aside = abs((bearing(car.here(), place) - car.heading() + 180.0) % 360.0 - 180.0)
     there = distance(car.here(), place)
     drives_there = there > SHUNTS_WITHIN * radius * sin(radians(min(90.0, aside)))
@@ -144,6 +144,12 @@ def test_a_rover_is_sent_straight_to_a_target_that_one_curve_leads_to():
     away, kinds = sent_to(90.0, SHUNTS_WITHIN * 1.5 + 1.0, 1.5)
     assert away <= 0.5
     assert DRIVES not in kinds
+
+
+@pytest.mark.parametrize(("speed", "shunts"), [(1.0, False), (2.0, True)])
+def test_a_car_shunts_to_what_is_too_near_for_its_speed(speed, shunts):
+    car = Car(1.2, 0.0)
+    assert Shunting(car, car, car, car.radius).face(Local(0.0, 12.0, 0.0), 0.5, speed) == shunts
 
 
 def test_a_rover_that_turns_on_its_own_is_sent_straight_there():

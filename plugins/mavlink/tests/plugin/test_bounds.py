@@ -81,16 +81,30 @@ def submarine(speed=1.05, **limits):
 def test_a_car_takes_longer_to_what_is_behind_it_as_was_measured(aside, seconds):
     """Flown by ArduRover 4.7-dev in GUIDED at 1.5 m/s: legs of 30 m, each turning by so many degrees."""
     (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "rover")
-    rover = Rates(1.5, 1.0, 1.0, autopilot.step, 36.0, 4.5, rounds=True, shunts_within=9.6, circling=5.03)
+    rover = Rates(1.5, 1.0, 1.0, autopilot.step, 36.0, 3.2, rounds=True, shunts_within=9.6, circling=5.03)
     leg = ((0.0, 0.0, 0.0), (0.0, 30.0, 0.0))
     assert rover.from_stop_to_stop(*leg, facing=float(aside)) == pytest.approx(seconds, rel=0.05)
     assert rover.latest().from_stop_to_stop(*leg, facing=float(aside)) > seconds
 
 
+@pytest.mark.parametrize(
+    ("metres", "speed", "seconds"),
+    [(14.0, 1.0, 25.5), (20.0, 1.5, 25.5), (25.0, 1.5, 29.9), (30.0, 2.0, 28.5), (40.0, 1.5, 41.4)],
+)
+def test_a_car_that_turns_round_once_more_takes_less_longer_as_was_measured(metres, speed, seconds):
+    """Flown by ArduRover 4.7-dev in GUIDED; 30 and 40 m calibrated it."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "rover")
+    rover = Rates(speed, 1.0, 1.0, autopilot.step, 36.0, 3.2, rounds=True, shunts_within=9.6, circling=5.03)
+    there, back = ((0.0, 0.0, 0.0), (0.0, metres, 0.0)), ((0.0, metres, 0.0), (0.0, 0.0, 0.0))
+    once = rover.faces(*back, 0.0)
+    assert rover.from_stop_to_stop(*there, facing=once) == pytest.approx(seconds, rel=0.05)
+    assert rover.latest().from_stop_to_stop(*there, facing=once) > seconds
+
+
 def test_a_car_on_a_mission_may_drive_on_before_it_turns_to_what_is_behind_it():
     """ArduRover took 21.3 s for the first leg of 6 m back at 1 m/s, and 11.5 s for each of the others."""
     (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "rover")
-    rover = Rates(1.0, 1.0, 1.0, autopilot.mission, 36.0, 4.5, rounds=True, shunts_within=0.0, circling=7.54)
+    rover = Rates(1.0, 1.0, 1.0, autopilot.mission, 36.0, 3.2, rounds=True, shunts_within=0.0, circling=7.54)
     leg = ((0.0, 6.0, 0.0), (0.0, 0.0, 0.0))
     assert rover.soonest().from_stop_to_stop(*leg, facing=0.0) < 11.5
     assert rover.latest().from_stop_to_stop(*leg, facing=0.0) > 21.3
