@@ -18,12 +18,12 @@ from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, with_remedies
 from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
-from mmrs_core.planning.remedies import too_long
+from mmrs_core.planning.remedies import or_else, too_long
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import TooNearError
 from mmrs_core.planning.team import Team, teams_to_try
-from mmrs_core.planning.time_remedies import for_times
+from mmrs_core.planning.time_remedies import for_times, later_times
 from mmrs_core.scene import Plan, RobotPlan, Scene
 
 
@@ -41,11 +41,13 @@ class _Search:
         find: decisions.
         dear: plans whose robots are kept apart at a cost, if at all.
         tried: makespans by what robots do, before they are kept apart.
+        unlimited: a plan without deadlines and longest durations, where some are not kept in it.
     """
 
     find: _Find
     dear: list[tuple[Team, Plan]]
     tried: dict[tuple[RobotPlan, ...], float]
+    unlimited: Plan | None
 
 
 def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
@@ -75,10 +77,11 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         able = [*_alone([job for job in jobs if all(map(team.able, job.tasks()))])]
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
     effort = effort or Effort()
+    unlimited: Plan | None = None
     if (free := _without_limits(scene)) != scene:
-        made = plan(free, seed=seed, effort=effort.trial())
-        if not broken_times(team, _spans(made)):
-            return made
+        unlimited = plan(free, seed=seed, effort=effort.trial())
+        if not broken_times(team, _spans(unlimited)):
+            return unlimited
     teams = _Remembered(teams_to_try(team))
     effort.least = least_makespan(team, jobs)
     find = partial(find_decisions, jobs=jobs, effort=effort)
@@ -91,7 +94,7 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         if found is not None and effort.over:
             break
         try:
-            made = _plan_asking(teams, wanted, jobs, _Search(each, dear, tried), found)
+            made = _plan_asking(teams, wanted, jobs, _Search(each, dear, tried, unlimited), found)
         except _NotBetterError:
             continue
         except InfeasibleError as error:
@@ -208,20 +211,26 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
         if refusal is None:
             raise InfeasibleError("no plan")
         raise _UnexplainedError(
-            "no plan was found that keeps robots apart", partial(_too_near, team, jobs, refusal)
+            "no plan was found that keeps robots apart",
+            partial(_too_near, team, jobs, refusal, search.unlimited),
         )
     return best
 
 
-def _too_near(team: Team, jobs: Sequence[Job], refusal: TooNearError) -> list[str]:
-    """Return why robots cannot be kept apart, with a smaller distance at which they can."""
-    scene = team.scene
-    least = floor(10.0 * ((scene.minimum_separation or 0.0) - refusal.short)) / 10.0
-    if least > 0.0 and len(jobs) * len(scene.robots) <= _FEW_PAIRS:
+def _too_near(team: Team, jobs: Sequence[Job], refusal: TooNearError, unlimited: Plan | None) -> list[str]:
+    """Return why robots cannot be kept apart, with a smaller distance or deadlines with which they can."""
+    scene, remedies = team.scene, list[str]()
+    asked = scene.minimum_separation or 0.0
+    for least in (asked - refusal.short, asked / 2.0, asked / 4.0):
+        rounded = floor(10.0 * least) / 10.0
+        if remedies or rounded <= 0.0 or len(jobs) * len(scene.robots) > _FEW_PAIRS:
+            break
         with suppress(InfeasibleError):
-            plan(replace(scene, minimum_separation=least))
-            return [f"{refusal}; a minimumSeparation of {least:g} m would do"]
-    return [str(refusal)]
+            plan(replace(scene, minimum_separation=rounded))
+            remedies.append(f"a minimumSeparation of {rounded:g} m")
+    if unlimited is not None:
+        remedies.append(" with ".join(later_times(team, _spans(unlimited))))
+    return [f"{refusal}{or_else(remedies)}"]
 
 
 def _plan_of(

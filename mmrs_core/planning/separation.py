@@ -27,6 +27,7 @@ from mmrs_core.scene import (
     Position,
     Recharge,
     Recover,
+    RobotPlan,
     Scene,
     Serve,
     Step,
@@ -63,8 +64,8 @@ class TooNearError(InfeasibleError):
         short: metres by which they come too near.
     """
 
-    def __init__(self, conflict: Conflict, least: float, homes: Mapping[str, Position]) -> None:
-        super().__init__(_words(conflict, least, homes))
+    def __init__(self, plan: Plan, conflict: Conflict, least: float, homes: Mapping[str, Position]) -> None:
+        super().__init__(_words(plan, conflict, least, homes))
         self.at_home = conflict.at_home
         self.robots = frozenset((conflict.first, conflict.second))
         self.short = least - conflict.distance
@@ -135,7 +136,7 @@ def _separated(team: Team, traffic: Traffic) -> Plan:
         better = [each for each in options if len(each.conflicts) < len(traffic.conflicts)]
         if not better:
             homes = {robot.name: robot.home for robot in team.scene.robots}
-            raise TooNearError(traffic.measured(first), traffic.least, homes)
+            raise TooNearError(traffic.plan, traffic.measured(first), traffic.least, homes)
         traffic = min(better, key=lambda each: each.cost)
     return traffic.plan
 
@@ -483,15 +484,27 @@ def first_conflict(scene: Scene, plan: Plan, least: float) -> Conflict | None:
     return traffic.measured(traffic.earliest()) if traffic.conflicts else None
 
 
-def _words(conflict: Conflict, least: float, homes: Mapping[str, Position]) -> str:
+def _words(plan: Plan, conflict: Conflict, least: float, homes: Mapping[str, Position]) -> str:
+    robots = {each.robot: each for each in plan.robots}
+    tasks = (_about(robots[name], conflict.time) for name in (conflict.first, conflict.second))
+    doing = f" ({', '.join(words)})" if (words := [*filter(None, tasks)]) else ""
     at_home = ", one of them at its home" if conflict.at_home else ""
     apart = dist(homes[conflict.first], homes[conflict.second])
-    near = f" (their homes are {apart:.1f} m apart)" if apart < least else ""
+    where = f"{at_home} (their homes are {apart:.1f} m apart)" if apart < least else f"{doing}{at_home}"
     return (
         f"robots '{conflict.first}' and '{conflict.second}' come within {conflict.distance:.1f} m"
-        f" after {conflict.time:.0f} s{at_home}{near}, {least:g} m are required:"
+        f" after {conflict.time:.0f} s{where}, {least:g} m are required:"
         f" {least - conflict.distance:.1f} m short, and waiting did not help"
     )
+
+
+def _about(robot: RobotPlan, time: float) -> str:
+    """Return what a robot is about at a time; empty where it is at home or waits."""
+    for step in robot.steps:
+        if step.begin <= time <= step.end and isinstance(step, Launch | Transit | Serve | Recover):
+            where = "at" if isinstance(step, Serve) else "going to"
+            return f"'{robot.robot}' {where} '{step.task}'" if step.task else f"'{robot.robot}' going home"
+    return ""
 
 
 def levels_above(least: float) -> Iterator[float]:

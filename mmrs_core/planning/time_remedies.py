@@ -50,6 +50,14 @@ def for_times(
         yield f"task '{name}' {words}{waits.get(name, '')}{sooner}; a deadline of {ceil(end)} s would do"
 
 
+def later_times(team: Team, spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:
+    """Yield the deadline or longest duration that each task would need to begin and end as it does."""
+    for name, words, _ in broken_times(team, spans):
+        begin, end = spans[name]
+        limit = f"deadline of {ceil(end)}" if "deadline" in words else f"maxDuration of {ceil(end - begin)}"
+        yield f"a {limit} s for '{name}'"
+
+
 def _waits_of(team: Team, plan: RobotPlan) -> Iterator[tuple[str, str]]:
     """Yield the tasks of a robot before which it has waited longer since it may be early, and that in words.
 

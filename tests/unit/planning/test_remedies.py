@@ -188,6 +188,22 @@ def test_a_distance_between_robots_that_is_proposed_can_be_kept():
     refusal(replace(whole, minimum_separation=float(least) + 0.2))
 
 
+def test_deadlines_that_are_proposed_where_robots_cannot_keep_apart_in_time_can_be_kept():
+    """Both tasks fill the same 40 s, 3 m apart: they can be done by two robots only, and not 10 m apart."""
+    team = (robot("r1"), robot("r2", (14.0, 0.0, 0.0)))
+    works = {"a": visit((100.0, 100.0, 30.0), hold=20.0), "b": visit((103.0, 100.0, 30.0), hold=20.0)}
+    tasks = {name: task(name, earliest=50.0, deadline=90.0) for name in works}
+    whole = scene(team, works, tasks=tasks, minimum_separation=10.0)
+    words = refusal(whole)
+    assert "('r1' going to 'a', 'r2' going to 'b')" in words
+    ((least, late, name),) = re.findall(
+        r"; a minimumSeparation of ([\d.]+) m or a deadline of (\d+) s for '(\w)' would do", words
+    )
+    assert plan(replace(whole, minimum_separation=float(least)))
+    later = (replace(each, deadline=float(late)) if each.name == name else each for each in whole.tasks)
+    assert plan(replace(whole, tasks=tuple(later)))
+
+
 RING = [
     box(name, west, south, east, north)
     for name, west, south, east, north in (
