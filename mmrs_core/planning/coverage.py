@@ -25,7 +25,7 @@ from mmrs_core.planning.limits import MOST
 from mmrs_core.planning.lines import APART, Swath
 from mmrs_core.planning.patterns import Pattern, layers_of
 from mmrs_core.planning.pockets import pockets_of
-from mmrs_core.planning.swaths import swaths
+from mmrs_core.planning.swaths import hatch_angle, swaths
 from mmrs_core.planning.turnarounds import turned_around
 from mmrs_core.scene import ActionAt, Area, Coverage, Point, Repetition, Ring, Robot, Scene, Stroke, Work
 
@@ -119,8 +119,11 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
     closed = closed_at(scene, robot, sweep.altitude)
     worth = shapely.to_wkb(GeometryCollection(_worth(target, closed)))
     shut = shapely.to_wkb(closed)
+    pattern = sweep.pattern
+    if pattern.cross_hatch and pattern.angle is None:  # the same for all robots, which do parts of it each
+        pattern = replace(pattern, angle=hatch_angle([polygon(shell), *map(polygon, holes)]))
     layers = layers_of(
-        sweep.pattern, sweep.start, lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start)
+        pattern, sweep.start, lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start)
     )
     covered = Coverage(
         shell=tuple(shell),

@@ -103,16 +103,24 @@ def sweep_angles(pieces: Sequence[Polygon]) -> list[float]:
     The number of swaths at a direction u is about half the sum of |edge x u| over the width
     (Cauchy-Crofton); as a function of the direction it is concave between the directions of edges.
     """
-    edges = np.concatenate(
-        [
-            np.diff(shapely.get_coordinates(ring), axis=0)
-            for piece in pieces
-            for ring in (piece.exterior, *piece.interiors)
-        ]
-    )
-    directions = np.unique(np.round(np.arctan2(edges[:, 1], edges[:, 0]) % pi, 6) % pi)
+    edges, directions = _edges(pieces)
     best = directions[np.argsort(_across(directions, edges), kind="stable")][: _ANGLES - 2].tolist()
     return list(dict.fromkeys([*best, 0.0, pi / 2]))
+
+
+def hatch_angle(pieces: Sequence[Polygon]) -> float:
+    """Return the direction, radians in [0, pi), at which swaths along and across it are fewest in all."""
+    edges, along = _edges(pieces)
+    directions = np.sort(np.concatenate([along, (along + pi / 2.0) % pi]))
+    both = _across(directions, edges) + _across((directions + pi / 2.0) % pi, edges)
+    return float(directions[int(np.argmin(np.round(both, 6)))])
+
+
+def _edges(pieces: Sequence[Polygon]) -> tuple[Floats, Floats]:
+    """Return (n, 2) edges of pieces with their holes, and their directions, each once."""
+    rings = [ring for piece in pieces for ring in (piece.exterior, *piece.interiors)]
+    edges = np.concatenate([np.diff(shapely.get_coordinates(ring), axis=0) for ring in rings])
+    return edges, np.unique(np.round(np.arctan2(edges[:, 1], edges[:, 0]) % pi, 6) % pi)
 
 
 def _across(directions: Floats, edges: Floats) -> Floats:

@@ -1,6 +1,8 @@
 from dataclasses import replace
-from math import inf
+from itertools import pairwise
+from math import atan2, degrees, hypot, inf
 
+import numpy as np
 import pytest
 import shapely
 
@@ -179,6 +181,21 @@ def test_swaths_are_extended_as_far_as_it_is_clear_and_crossed():
     assert (first.spots[0], first.length - first.spots[-1]) == pytest.approx((14.0, 15.0), abs=0.01)
     assert sum(map(len, (stroke.spots for stroke in work.strokes))) == 2 * sum(len(s.spots) for s in plain)
     assert {abs(s.points[0][1] - s.points[-1][1]) for s in work.strokes if s.part} == {120.0}
+
+
+def test_a_cross_hatch_has_one_direction_for_robots_of_all_clearances():
+    """Alone, one would go east and north, and the other one north-east and north-west."""
+    shell = ((0.0, 0.0), (-16.8, 24.0), (-47.1, 23.0), (-47.9, 4.0), (-32.8, -16.2), (-20.6, -21.3))
+    wall = Area("wall", AreaUse.OBSTACLE, ((-32.0, 2.0), (-24.0, 2.0), (-32.0, 7.0)), -inf, inf, 1.0)
+    sweep = Sweep(9.0, 8.0, "test", length=8.0, action="photo", pattern=Pattern(cross_hatch=True))
+
+    def directions(clearance):
+        strokes = work_over(scene(wall), robot(clearance), shell, sweep).strokes
+        legs = [np.subtract(two, one)[:2] for each in strokes for one, two in pairwise(each.points)]
+        return {round(degrees(atan2(y, x)) % 180.0) for x, y in legs if hypot(x, y) > 9.0}
+
+    assert directions(0.5) == directions(1.5)
+    assert len(directions(1.5)) == 2
 
 
 def test_the_first_stroke_is_near_the_start():
