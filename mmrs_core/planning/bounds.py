@@ -39,17 +39,13 @@ Places = NDArray[np.object_]
 
 
 def least_makespan(team: Team, jobs: Sequence[Job]) -> float:
-    """Return seconds that no plan's makespan falls below; 0 where nothing is known.
-
-    That is where an autopilot reports legs as done before their end, so that many short ones take less
-    than a long one.
-    """
+    """Return seconds that no plan's makespan falls below; 0 where nothing is known."""
     tasks = [job.name for job in jobs if job.choice is None and job.tasks()]
     crews = {task: team.able(task) for task in tasks}
     known = {name for crew in set(crews.values()) for name in crew}
     names = {name: i for i, name in enumerate(each for each in team.pilots if each in known)}
     pilots = [team.pilots[name] for name in names]
-    if not pilots or any(pilot.kinematics.timing.settling < 0.0 for pilot in pilots):
+    if not pilots:
         return 0.0
     hulls = [_places(team, task) for task in tasks]
     places, owners = np.concatenate(hulls), np.repeat(np.arange(len(tasks)), list(map(len, hulls)))
@@ -69,6 +65,10 @@ def least_makespan(team: Team, jobs: Sequence[Job]) -> float:
         whole = sum(work[task] for task, own in zip(tasks, mine.tolist(), strict=True) if own)
         together = _together(places[some], away[some][:, robots].T, seconds, back, whole)
         least.append(aloft + down + together)
+        if least[-1] > max(pilots[robot].charge for robot in robots):
+            sortie = aloft + down + (1.0 + back) * float(seconds(away[some][:, robots].min()))
+            edges = seconds(_tree(places[some]))
+            least.append(_charged([pilots[robot] for robot in robots], edges, sortie, whole))
     return max(least)
 
 
@@ -79,11 +79,16 @@ def _together(
 
     Multipliers are for points only: where robots are anywhere at once, they may come twice for nothing.
     """
-    boxes = shapely.bounds(places)
-    (west, south, east, north), points = boxes.T.copy(), bool((boxes[:, :2] == boxes[:, 2:]).all())
-    if points and len(places) <= _MOST:
+    if _are_points(places) and len(places) <= _MOST:
         between, there = seconds(_distances(places, places)), seconds(away)
         return max(least_longest(between, there, back, work), longest_to_few(between, there, back))
+    edges = seconds(_tree(places))
+    return float(shared(edges, (1.0 + back) * seconds(away.min(axis=1)), work).min())
+
+
+def _tree(places: Places) -> Array:
+    """Return the lengths of a shortest spanning tree of all places, longest first."""
+    (west, south, east, north), points = shapely.bounds(places).T.copy(), _are_points(places)
 
     def lengths_from(i: int) -> Array:
         if not points and len(places) <= _MOST:
@@ -93,8 +98,37 @@ def _together(
         least: Array = np.sqrt(level[0] ** 2 + level[1] ** 2)
         return least
 
-    edges, _ = spanning_tree(lengths_from, len(places))
-    return float(shared(seconds(edges), (1.0 + back) * seconds(away.min(axis=1)), work).min())
+    return np.sort(spanning_tree(lengths_from, len(places))[0])[::-1]
+
+
+def _are_points(places: Places) -> bool:
+    boxes = shapely.bounds(places)
+    return bool((boxes[:, :2] == boxes[:, 2:]).all())
+
+
+def _charged(pilots: Sequence[Pilot], edges: Array, sortie: float, work: float) -> float:
+    """Return seconds that no plan falls below in which each sortie takes no more than a charge.
+
+    So many sorties that all of them together suffice take at least: a shortest forest of so many trees, what
+    each takes besides, and all work. All but the first of each robot come after charging.
+
+    Args:
+        pilots: of all robots that take part.
+        edges: seconds of a shortest spanning tree of all places, longest first.
+        sortie: seconds of a launch, to the nearest place and back, and of a landing.
+        work: seconds at all places together.
+    """
+    charge, robots = max(pilot.charge for pilot in pilots), len(pilots)
+    charging = [pilot.kinematics.recharge for pilot in pilots if pilot.kinematics.recharge is not None]
+    left = float(edges.sum())
+    least, sorties = inf, 0
+    while sorties < robots or (charging and least == inf and sortie < charge):
+        sorties += 1
+        busy = left + sorties * sortie + work
+        if busy <= sorties * charge:
+            least = min(least, (busy + max(0, sorties - robots) * min(charging, default=0.0)) / robots)
+        left -= float(edges[sorties - 1]) if sorties <= len(edges) else 0.0
+    return 0.0 if least == inf else least
 
 
 def _gaps(west: Array, south: Array, east: Array, north: Array, i: int) -> tuple[Array, Array]:
@@ -107,9 +141,8 @@ def _gaps(west: Array, south: Array, east: Array, north: Array, i: int) -> tuple
 
 def _distances(places: Places, others: Places) -> Array:
     """Return (places, others) metres between them."""
-    boxes, ends = shapely.bounds(places), shapely.bounds(others)
-    if (boxes[:, :2] == boxes[:, 2:]).all() and (ends[:, :2] == ends[:, 2:]).all():
-        east, north = boxes[:, :2].T[:, :, None] - ends[:, :2].T[:, None]
+    if _are_points(places) and _are_points(others):
+        east, north = shapely.bounds(places)[:, :2].T[:, :, None] - shapely.bounds(others)[:, :2].T[:, None]
         found: Array = np.sqrt(east * east + north * north)
         return found
     exact: Array = shapely.distance(places[:, None], others)
@@ -125,7 +158,7 @@ def _aloft_and_down(team: Team, pilots: Sequence[Pilot], tasks: Sequence[str]) -
     low = min(point[2] for work in works for stroke in work.strokes for point in stroke.points)
     if team.scene.transit_altitude is not None:
         low = min(low, team.scene.transit_altitude)
-    free = not team.scene.areas and team.scene.minimum_separation is None
+    free = not team.scene.areas
     launches, landings = [], []
     for kinematics, home in ((pilot.kinematics, pilot.robot.home) for pilot in pilots):
         rise = max(0.0, min(low, kinematics.ceiling) - home[2]) if free and kinematics.launches else 0.0
@@ -193,7 +226,9 @@ def _quickest(team: Team, names: Sequence[str], longest: float) -> Callable[[Arr
         speed = max(kinematics.cruise, *(commanded_speed(each, kinematics) for each in strokes))
         timing = replace(kinematics.timing, overshoot=0.0, lag=0.0)
         rates = replace(kinematics.rates(speed), timing=timing, shunting=0.0, accepts=0.0)
-        times = [rates.from_stop_to_stop((0.0, 0.0, 0.0), (each, 0.0, 0.0)) for each in lengths.tolist()]
+        times = np.array([rates.from_stop_to_stop((0.0, 0.0, 0.0), (x, 0.0, 0.0)) for x in lengths.tolist()])
+        if timing.settling < 0.0:  # reports legs as done before their end: many short ones may take less
+            times = lengths * max(0.0, min(1.0 / speed, (times[1:] / lengths[1:]).min()))
         least = np.minimum(least, times)
     # Seconds grow the more slowly the longer the leg: chords between points of that curve lie below it, the
     # first one also below what short legs count that are taken together.

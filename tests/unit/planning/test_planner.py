@@ -148,6 +148,27 @@ def test_a_plan_that_cannot_be_better_is_at_its_lower_bound(returns):
     assert found.lower_bound == pytest.approx(found.makespan) == (63.0 if returns else 33.0)
 
 
+@pytest.mark.parametrize("robots", [1, 2])
+def test_the_lower_bound_counts_the_charging_that_no_plan_can_do_without(robots):
+    """Each of four tasks takes a charge; each robot returns to charge between two of its own."""
+    at_once = {"launch": 0.0, "recovery": 0.0, "floor": 0.0}
+    team = [with_kinematics(each, endurance=70.0, recharge=20.0, **at_once) for each in TWO[:robots]]
+    works = {
+        f"{east} {north}": visit((east, north, 0.0), hold=3.0)
+        for east, north in ((300.0, 0.0), (-300.0, 0.0), (0.0, 300.0), (0.0, -300.0))
+    }
+    found = sound(scene(team, works))
+    charged = 4 // robots * 63.0 + (4 // robots - 1) * 20.0
+    assert 0.9 * charged <= found.lower_bound <= found.makespan
+    assert found.makespan == pytest.approx(charged, rel=0.05)
+
+
+def test_a_robot_that_reports_legs_as_done_before_their_end_has_a_lower_bound():
+    hasty = with_kinematics(robot(), timing=LegTiming(0.5, settling=-0.75))
+    found = plan(scene([hasty], {"a": visit((300.0, 0.0, 20.0), hold=3.0)}))
+    assert 60.0 <= found.lower_bound <= found.makespan
+
+
 def test_robots_of_one_sort_that_can_do_different_tasks_share_what_is_laid_out():
     one, two = map(visit, PLACES)
     works = SharedWorks({"r1": 0, "r2": 0})
