@@ -46,6 +46,12 @@ def test_without_a_binary_it_names_the_variables():
     assert all(each.variable in done.stderr for each in FIRMWARES)
 
 
+def test_without_a_binary_for_any_of_its_flights_nothing_went_as_declared(tmp_path):
+    done = fly("rover: legs", **stand_in(tmp_path))
+    assert done.returncode == 2
+    assert done.stdout.endswith("not flown: rover: legs: set MMRS_ARDUROVER\n")
+
+
 def test_an_unknown_flight_is_a_usage_error():
     done = fly("copter: nowhere")
     assert (done.returncode, done.stdout) == (2, "")
