@@ -383,16 +383,25 @@ def _vertical_figures(
 ) -> Iterator[Figure]:
     accelerations: list[float] = []
     missing = "no upright leg was long enough for it"
+    chosen = [(flight, level.chosen & _off_the_ground(flight)) for flight, level in flown]
     for name, sign in (("maxClimbRate", 1.0), ("maxDescentRate", -1.0)):
-        rates = [each.value for flight, level in flown for each in climbs_of(flight, level.chosen, sign)]
+        rates = [each.value for part in chosen for each in climbs_of(*part, sign)]
         yield figure(name, "m/s", fastest(rates), missing)
-        for flight, level in flown:
+        for flight, samples in chosen:
             speeds = np.maximum(sign * flight.velocities[:, 2], 0.0)
-            ramps = vertical_ramps(flight, level.chosen, sign)
+            ramps = vertical_ramps(flight, samples, sign)
             accelerations += [
                 with_jerk(flight.times, speeds, each, min(jerk, LARGEST_JERK)) for each in ramps
             ]
     yield figure("maxVerticalAcceleration", "m/s²", accelerations, missing)
+
+
+def _off_the_ground(flight: Flight) -> Flags:
+    """Return which samples belong to no final descent of a landing."""
+    off = np.ones(len(flight.times), bool)
+    for each in landings_of(flight):
+        off &= (flight.times < each.begun) | (flight.times > each.ended)
+    return off
 
 
 def _turn_rate(flights: Sequence[Flight]) -> Figure:

@@ -264,12 +264,15 @@ class Landing:
     """The end of a landing.
 
     Attributes:
+        begun, ended: times at which its final descent begins, and its motors have stopped.
         rate: of the final descent, metres per second.
         height: above the ground at which that begins, metres; NaN where the descent was even all along.
         stopping: seconds from standing on the ground until the motors have stopped.
         drop, seconds: metres of all its descent, and how long it takes until the motors have stopped.
     """
 
+    begun: float
+    ended: float
     rate: float
     height: float
     stopping: float
@@ -296,7 +299,7 @@ def landings_of(flight: Flight) -> Iterator[Landing]:
         begin, rate = final
         height = float(heights[begin] - heights[-1]) if begin > 0 else float("nan")
         drop, seconds = float(heights[0] - heights[-1]), disarmed - float(times[0])
-        yield Landing(rate, height, disarmed - float(times[-1]), drop, seconds)
+        yield Landing(float(times[begin]), disarmed, rate, height, disarmed - float(times[-1]), drop, seconds)
 
 
 def _final(times: Floats, descents: Floats) -> tuple[int, float] | None:

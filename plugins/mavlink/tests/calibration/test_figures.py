@@ -200,6 +200,18 @@ def test_a_landing_tells_its_end(tmp_path):
     assert found["", "recoveryTime"].median == pytest.approx(3.0, abs=0.4)
 
 
+def test_the_end_of_a_missions_landing_is_no_descent_of_its_legs(tmp_path):
+    down = np.concatenate([np.full(30, 10.0), np.arange(10.0, 0.0, -0.05), np.zeros(40)])
+    rates = np.gradient(down, 0.1)
+    samples = [
+        Sample(n / 10.0, (0.0, 0.0, height), (0.0, 0.0, rate), mode=AUTO, armed=n < len(down) - 10)
+        for n, (height, rate) in enumerate(zip(down.tolist(), rates.tolist(), strict=True))
+    ]
+    found = figures(tmp_path, dataflash(samples))
+    assert found["", "landingRate"].median == pytest.approx(0.5, rel=0.05)
+    assert found["MISSION", "maxDescentRate"].values == ()
+
+
 @pytest.mark.parametrize(("rate", "height", "written"), [(0.2, 6.0, True), (0.48, 10.5, False)])
 def test_figures_of_landings_are_written_that_tell_how_long_these_take(rate, height, written, tmp_path):
     """Its autopilot lands from 10 m on at 0.5 m/s, and so it is planned, with a stop before."""
