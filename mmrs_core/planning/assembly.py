@@ -210,7 +210,7 @@ def _reason(team: Team, task: str, robot: str) -> str:
         return team.refusal(task, robot) or "it cannot do the task"
     if team.whole(task) and len(team.able(task)) > 1:
         return "one robot must do all of it, and the mission ends no later with another one"
-    wanted = team.tasks[task].wanted
+    wanted = team.asked[task]
     others = [name for name in team.able(task) if name not in team.sharing_with(task, robot)]
     apart = (
         f"; it cannot share it with {', '.join(others)}, whose work is laid out otherwise" if others else ""

@@ -265,16 +265,17 @@ class _Explaining:
         if not isinstance(found, Schedule):
             return
         apart = distance_to_keep(scene) is not None
+        soonest = min(max(self._ends, default=0.0), self._whole.unseparated or inf)
         if scene.stations and self._ends:
             names = ", ".join(f"'{station.name}'" for station in scene.stations)
             relays = (
                 f"relay {names}, which comes" if len(scene.stations) == 1 else f"relays {names}, which come"
             )
             words = f"robots wait for {relays} home last{', and keep apart' if apart else ''}"
-            yield Limit("relays", self._whole.makespan - max(self._ends), words)
+            yield Limit("relays", self._whole.makespan - soonest, words)
         elif apart and self._ends:
             words = f"robots keep {scene.minimum_separation:g} m apart"
-            yield Limit("separation", self._plan.makespan - max(self._ends), words)
+            yield Limit("separation", self._plan.makespan - soonest, words)
         if any(job.after for job in self._jobs):
             jobs = [replace(job, after=()) for job in self._jobs]
             yield Limit("dependencies", self._sooner(scene, jobs), _waits_in(critical_path(self._plan)))

@@ -104,7 +104,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     found = best_signalled(scene, dear, found)
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
-    return replace(idle_apart(scene, found, tried), lower_bound=effort.least)
+    soonest = min(tried.values())
+    return replace(idle_apart(scene, found, tried), lower_bound=effort.least, unseparated=soonest)
 
 
 def _without_limits(scene: Scene) -> Scene:

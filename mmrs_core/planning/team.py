@@ -58,6 +58,7 @@ class Team:
             footprints or different clearances make.
         mixtures: by name of task: the sorts that can share it, where there are several.
         tasks: by name.
+        asked: by name of task: the robots that the mission asks for, whatever numbers are tried.
         kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
         candidates: for shares of tasks, by all that matters to them; see `schedule`.
@@ -74,6 +75,7 @@ class Team:
         from_homes: float | None = None,
         spaces: Spaces | None = None,
         spare: float = 0.0,
+        asked: Mapping[str, int | None] | None = None,
     ) -> None:
         """Lay everything out.
 
@@ -85,7 +87,9 @@ class Team:
             from_homes: metres that robots keep from the homes of others; None: see `Spaces`.
             spaces: of another team of the same robots; None: new ones.
             spare: see `Pilot`.
+            asked: see `Team`; None: what the scene says.
         """
+        self.asked = {task.name: task.wanted for task in scene.tasks} if asked is None else asked
         self.scene, self.fine = scene, fine
         self.spaces = spaces or Spaces(scene, from_homes=from_homes)
         self.homebound = homebound_of(scene) if homebound is None else homebound
@@ -223,6 +227,7 @@ class Team:
                 from_homes=from_homes,
                 spaces=self.spaces if from_homes is None else None,
                 spare=spare,
+                asked=self.asked,
             )
         return self._others[key].wanting({task.name: task.wanted for task in self.scene.tasks})
 
@@ -239,6 +244,7 @@ class Team:
             fine=self.fine,
             homebound=self.homebound,
             spaces=self.spaces,
+            asked=self.asked,
         )
 
     def wanting(self, wanted: Mapping[str, int | None]) -> Team:

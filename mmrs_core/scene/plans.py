@@ -174,6 +174,7 @@ class Plan:
         left_out: what is not done of tasks, since it cannot be reached.
         lower_bound: seconds that no plan's makespan by the planner's times falls below; 0: nothing is known.
         planned: makespan by the planner's times, where `makespan` is another; 0: it is the same.
+        unseparated: of the best plan that was found in which robots need not keep apart; 0: there is none.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -184,3 +185,4 @@ class Plan:
     left_out: tuple[Omission, ...] = ()
     lower_bound: float = 0.0
     planned: float = 0.0
+    unseparated: float = 0.0

@@ -39,6 +39,18 @@ def test_sharers_are_left_out_and_added():
     assert found.makespan + without.later == pytest.approx(alone.makespan)
 
 
+def test_separation_costs_what_the_best_plan_without_it_saves():
+    """One robot does both tasks, which are 5 m apart, with 30 m to keep; without, each does one."""
+    team = (robot("r1"), robot("r2", (40.0, 0.0, 0.0)))
+    places = {"a": (20.0, 100.0, 20.0), "b": (25.0, 100.0, 20.0)}
+    apart = scene(team, {name: visit(at, hold=30.0) for name, at in places.items()}, minimum_separation=30.0)
+    found, explanation = explained(apart)
+    free = plan(replace(apart, minimum_separation=None))
+    (limit,) = (each for each in explanation.limits if each.name == "separation")
+    assert limit.cost == pytest.approx(found.makespan - free.makespan)
+    assert limit.cost > 30.0
+
+
 def test_an_alternative_that_no_charge_suffices_for_has_a_fault():
     weak = with_kinematics(TWO[1], endurance=60.0)
     _, explanation = explained(scene((TWO[0], weak), {"a": visit((-300.0, 0.0, 20.0))}))

@@ -19,6 +19,7 @@ from sound_plans import complaints, sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning import deconfliction
+from mmrs_core.planning.assembly import why_idle
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
@@ -468,6 +469,16 @@ def test_a_robot_without_work_names_the_separation_only_where_it_is_known_to_be_
     assert [each.idle for each in alone.robots if each.idle] == [
         "'a': one robot must do all of it, and the mission ends no later with another one"
     ]
+
+
+def test_a_robot_without_work_names_the_number_of_robots_only_where_the_mission_states_one():
+    line = road((0.0, 50.0, 20.0), (100.0, 50.0, 20.0), cuts=(25.0, 50.0, 75.0))
+    whole = scene(TWO, {"a": line})
+    one = scene(TWO, {"a": line}, tasks={"a": task("a", wanted=1)})
+    assert "the task wants 1" in why_idle(Team(one), "r2")
+    tried = Team(whole).wanting({"a": 1})
+    for team in (tried, tried.changed(None), tried.at_home(frozenset())):
+        assert why_idle(team, "r2") == "'a': no plan was found in which it makes the mission end sooner"
 
 
 def test_robots_stay_at_home_where_others_keep_apart_for_less_without_them(monkeypatch):
