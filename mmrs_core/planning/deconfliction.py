@@ -60,13 +60,15 @@ def kept_apart(
         refusal = error
     least = best if made is None else better(made, best)
     levels = levelled(team, jobs, decisions, found, inf if least is None else least.makespan)
-    apart = None if levels is None else _waiting(team, levels, least)
+    other = levels is not None and levels.plan.robots != found.robots
+    apart = _waiting(team, levels, least) if levels is not None and other else None
     if made is None and (levels is None or levels.conflicts):
         dear.append((team, found))
     if apart is not None:
         made = apart if made is None else better(apart, made)
-    if made is not None and made.makespan > _WORTH_SIGNALS * found.makespan:
-        made = signalled(team, found, better(made, best).makespan) or made
+    if not other if made is None else made.makespan > _WORTH_SIGNALS * found.makespan:
+        least = best if made is None else better(made, best)
+        made = signalled(team, found, inf if least is None else least.makespan) or made
     least = best if made is None else better(made, best)
     made = starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
     if made is None:
