@@ -9,6 +9,10 @@ from typing import NamedTuple
 from .profiles import VehicleProfile
 from .program import Travel
 
+NEARER = 0.9
+"""Share of the distance at which a place counts as reached within which one stops that stops early: it might
+otherwise stand a bit too far away."""
+
 
 class Limit(NamedTuple):
     """A parameter, and what it must be.
@@ -41,7 +45,7 @@ def limits_of(profile: VehicleProfile, travel: Travel, acceptance: float = inf) 
         acceptance: metres from a place at which it counts as reached.
     """
     mode = f"it travels {travel.mode}"
-    radius = min(travel.radius, acceptance) if profile.stops_early else travel.radius
+    radius = min(travel.radius, NEARER * acceptance) if profile.stops_early else travel.radius
     yield from (Limit(name, radius * unit, mode) for name, unit in profile.radii.items())
     for units, rate, how in (
         (profile.climbs, travel.climb, "climbs at {:g} m/s"),

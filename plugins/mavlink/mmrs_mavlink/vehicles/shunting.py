@@ -43,7 +43,7 @@ RESEND_SECONDS = 1.0
 """A Rover stops where it is not commanded a speed again within 3 s."""
 
 HALTED = 0.05
-"""Metres per second up to which it has halted between two arcs."""
+"""Metres per second up to which it has halted, as between two arcs."""
 
 HALT_SECONDS = 6.0
 

@@ -13,7 +13,7 @@ from ..links.link import Link
 from ..program import Geographic, Local, Look, Object, Place
 from ..services.commands import command, command_at
 from .mode_control import ModeControl
-from .shunting import Shunting
+from .shunting import HALTED, Shunting
 from .telemetry import Telemetry
 
 PATIENCE_FACTOR = 4.0
@@ -29,6 +29,10 @@ ADVANCE_SPEED = 0.05
 ADVANCE_PART = 0.9
 """Metres by which it comes nearer with every metre covered, at least: up to 25 degrees beside the line."""
 
+CREEPING, LEAST_CREEPING = 0.3, 0.02
+"""Metres per second up to which one that steers like a car may come nearer at any angle, and by which it does
+so at least: it turns to a target beside it the more slowly the nearer that is."""
+
 
 class Advance:
     """Whether a vehicle approaches a target: one that does not may never have received it."""
@@ -38,19 +42,23 @@ class Advance:
         self._telemetry, self._place = telemetry, place
         self._here, self._since = telemetry.here(), telemetry.time()
 
-    def ceased(self, seconds: float) -> bool:
+    def ceased(self, seconds: float, *, steers: bool = False) -> bool:
         """Return whether it has not come nearer since the last judgement.
 
         One whose positions do not arrive is not judged.
 
         Args:
             seconds: between two judgements, of which half must lie between the positions that are compared.
+            steers: whether it steers like a car.
         """
         here, now = self._telemetry.here(), self._telemetry.time()
         if now - self._since < seconds / 2.0:
             return False
         nearer = distance(self._here, self._place) - distance(here, self._place)
-        least = max(ADVANCE_SPEED * (now - self._since), ADVANCE_PART * distance(self._here, here))
+        covered, passed = distance(self._here, here), now - self._since
+        least = max(ADVANCE_SPEED * passed, ADVANCE_PART * covered)
+        if steers and covered <= CREEPING * passed:
+            least = LEAST_CREEPING * passed
         self._here, self._since = here, now
         return nearer < least
 
@@ -127,8 +135,9 @@ class Steering:
                 raise FaultError(
                     NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
                 )
-            lost = advance.ceased(resend)
-            if lost and self._shunting.face(place, self._acceptance, speed or 0.0):
+            lost = advance.ceased(resend, steers=self._shunting.radius > 0.0)
+            stands = self._telemetry.speed() <= HALTED
+            if lost and stands and self._shunting.face(place, self._acceptance, speed or 0.0):
                 advance = Advance(self._telemetry, place)
             if lost or self._must_turn(look):
                 self._steer(place, look)

@@ -14,7 +14,7 @@ from mmrs_mavlink.profiles.profile import Timing
 from mmrs_mavlink.program import Geographic, Local, Travel
 from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.vehicles.shunting import Shunting
-from mmrs_mavlink.vehicles.steering import Steering
+from mmrs_mavlink.vehicles.steering import Advance, Steering
 from mmrs_runtime.controllers.geodesy import bearing, distance, metres_per_degree
 
 HOME = Geographic(42.37, 13.35, 0.0)
@@ -202,3 +202,14 @@ def test_a_rover_that_stops_beside_its_target_turns_to_it():
     Steering(car, car, control, 0.5, car.radius).go_to(place, 1.0, None, False)
     assert distance(car.here(), place) <= 0.5
     assert car.seconds < 60.0
+
+
+@pytest.mark.parametrize(
+    ("moved", "steers", "ceased"), [(0.1, True, False), (0.1, False, True), (0.0, True, True)]
+)
+def test_a_car_that_creeps_up_to_a_target_beside_it_is_not_sent_there_again(moved, steers, ceased):
+    at = {"north": 0.0, "seconds": 0.0}
+    telemetry = SimpleNamespace(here=lambda: Local(at["north"], 0.0, 0.0), time=lambda: at["seconds"])
+    advance = Advance(telemetry, Local(0.5, 0.5, 0.0))
+    at.update(north=moved, seconds=1.0)
+    assert advance.ceased(1.0, steers=steers) == ceased
