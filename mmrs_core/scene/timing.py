@@ -217,7 +217,10 @@ class Rates:
         if facing is None and not self.rounds:
             return self.shunting if away <= self.shunts_within else self.circling
         aside = 0.0 if facing is None else abs(turn(facing, along))
-        if aside <= (self.timing.aside if self.circling or self.halt else self.timing.pivots):
+        if not (self.circling or self.halt):
+            turning = self.shunting * aside / 180.0 if aside > self.timing.pivots else 0.0
+            return turning + self.timing.swerving * sin(radians(aside))
+        if aside <= self.timing.aside:
             return 0.0
         if self._drives_round(away, aside):
             radius = self.circling * self.cruise / (2.0 * pi)

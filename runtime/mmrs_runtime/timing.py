@@ -70,7 +70,9 @@ class LegTiming:
         shunts_for: seconds up to which a leg may be shunted for in the same way, if that is longer.
         aside: degrees from where it looks within which it sets out to a place without either.
         pivots: degrees from where it looks beyond which one that turns on the spot does so before it sets
-            out; up to these it turns while it sets out, which is not counted.
+            out; up to these it turns while it sets out.
+        swerving: seconds that one that turns on the spot takes longer to get onto a leg after a right angle;
+            after other turns, by the sine of these.
         closing: seconds in which what its target has gone ahead while it turned round becomes less by e; 0:
             that waits for it.
         hesitating: seconds that it may drive on, at most, before it turns to a place straight behind.
@@ -109,6 +111,7 @@ class LegTiming:
     shunts_for: float = 0.0
     aside: float = 0.0
     pivots: float = inf
+    swerving: float = 0.0
     closing: float = 0.0
     hesitating: float = 0.0
     unlimited: LegTiming | None = None

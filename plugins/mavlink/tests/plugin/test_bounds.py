@@ -126,6 +126,23 @@ def test_a_robot_on_tracks_turns_before_it_goes_to_what_is_behind_it_as_was_meas
 
 
 @pytest.mark.parametrize(
+    ("metres", "aside", "speed", "seconds"),
+    [(4.0, 90, 1.2, 6.1), (9.0, 90, 1.2, 10.2), (12.0, 120, 1.5, 13.7), (6.0, 120, 1.0, 11.2)],
+)
+def test_a_robot_on_tracks_gets_onto_a_leg_behind_a_corner_as_late_as_was_measured(
+    metres, aside, speed, seconds
+):
+    """Flown by ArduRover 4.7-dev on tracks in GUIDED; legs of 12 m calibrated it."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "ground")
+    crawler = Kinematics(
+        cruise=speed, slowest=0.0, fastest=1.5, climb=1.0, descent=1.0, turn_rate=autopilot.turn_rate
+    ).flown_by(autopilot.step)
+    leg, rates = ((0.0, 0.0, 0.0), (0.0, metres, 0.0)), crawler.rates(speed)
+    assert rates.from_stop_to_stop(*leg, facing=float(aside)) == pytest.approx(seconds, rel=0.03)
+    assert rates.latest().from_stop_to_stop(*leg) > seconds
+
+
+@pytest.mark.parametrize(
     ("metres", "aside", "seconds"), [(12.0, 180, 19.5), (14.42, 146, 21.4), (8.0, 90, 12.7)]
 )
 def test_a_robot_on_tracks_turns_before_it_goes_on_missions_as_was_measured(metres, aside, seconds):
