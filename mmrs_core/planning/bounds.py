@@ -24,15 +24,18 @@ from mmrs_core.planning.few_places import longest_to_few
 from mmrs_core.planning.forests import least_longest, shared, spanning_tree
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.strokes import commanded_speed, joined, serve_seconds
+from mmrs_core.planning.strokes import commanded_speed, continues, joined, serve_seconds
 from mmrs_core.planning.team import Team
-from mmrs_core.scene import Work, distinct_works
+from mmrs_core.scene import Coverage, Stroke, Work, distinct_works
 
 _CREWS = 8
 """Sets of robots that are looked at one by one, with the tasks that no others can do."""
 
 _MOST = 2000
 """Places up to which distances between them are exact; beyond, those of the rectangles around them."""
+
+_WHOLLY = 0.99
+"""Share of a task at least that robots with different works for it do, thin strips between left out."""
 
 Array = NDArray[np.float64]
 Places = NDArray[np.object_]
@@ -200,8 +203,35 @@ def _work(team: Team, task: str) -> float:
     if work is not None:
         strokes, pilots = joined(work.strokes), [team.pilots[name] for name in names]
         return min(sum(serve_seconds(each, p.robot, p.kinematics) for each in strokes) for p in pilots)
-    materials = [team.forwards(task, name) for name in names] if team.whole(task) else []
+    if not team.whole(task):
+        return _at_best(team, names)
+    materials = [team.forwards(task, name) for name in names]
     return min((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
+
+
+def _at_best(team: Team, works: Mapping[str, Work]) -> float:
+    """Return the seconds of different works for a task if all went as the quickest stroke of any of them."""
+    amounts, rates = list[float](), list[float]()
+    for name, work in works.items():
+        pilot, coverage = team.pilots[name], work.coverage
+        done = [_amount(stroke, coverage) for stroke in work.strokes]
+        layers = len({stroke.part for stroke in work.strokes})
+        area = sum(shapely.Polygon(*piece).area for piece in coverage.target) if coverage else 0.0
+        amounts.append(layers * area if coverage else sum(done))
+        chain = list[int]()
+        for i, stroke in enumerate(work.strokes):
+            chain = [*chain, i] if chain and continues(work.strokes[i - 1], stroke) else [i]
+            (whole,) = joined(work.strokes[j] for j in chain)
+            seconds = serve_seconds(whole, pilot.robot, pilot.kinematics)
+            rates.append(sum(done[j] for j in chain) / seconds if seconds > 0.0 else inf)
+    return _WHOLLY * min(amounts) / max(rates)
+
+
+def _amount(stroke: Stroke, coverage: Coverage | None) -> float:
+    """Return square metres that a stroke covers at most, or how much of a line it is, in its measure."""
+    if coverage is None:
+        return abs(stroke.stretch[1] - stroke.stretch[0])
+    return coverage.width * (len(stroke.spots) * coverage.length if coverage.length else stroke.length)
 
 
 def _places(team: Team, task: str) -> Places:

@@ -88,6 +88,8 @@ def _carry_out(made, folder, contributions, outcome):
     models, _ = pipeline.valid_models(folder, contributions)
     scene = pipeline.expand(pipeline.ground(models), contributions)
     plan = pipeline.plan(scene)
+    if plan.lower_bound > plan.makespan + 1e-3:
+        outcome.complaints.append(f"lower bound of {plan.lower_bound} s above {plan.makespan} s")
     behaviour, _ = pipeline.transform(scene, plan, contributions)
     pipeline.save(behaviour, folder / "behaviour.xmi", contributions)
     behaviour = _read_again(folder / "behaviour.xmi", models, contributions, outcome)

@@ -63,6 +63,7 @@ def test_robots_with_other_cameras_share_a_field_and_end_at_about_the_same_time(
     alone = plan(scene(robots[1:], {"a": works["r2"]})).makespan
     assert max(ends) < 0.85 * alone
     assert max(ends) - min(ends) < 0.15 * max(ends)
+    assert found.lower_bound > 0.6 * found.makespan
 
 
 def test_each_point_is_done_by_one_robot_whose_device_has_another_name():
