@@ -20,14 +20,14 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts, polygon, rings
 from mmrs_core.planning.footprints import GRID
-from mmrs_core.planning.in_passing import trigger_distance
+from mmrs_core.planning.in_passing import MOST_CUTS, in_passing
 from mmrs_core.planning.limits import MOST
 from mmrs_core.planning.lines import APART, Swath
 from mmrs_core.planning.patterns import Pattern, layers_of
 from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.planning.swaths import hatch_angle, swaths
 from mmrs_core.planning.turnarounds import turned_around
-from mmrs_core.scene import ActionAt, Area, Coverage, Point, Repetition, Ring, Robot, Scene, Stroke, Work
+from mmrs_core.scene import ActionAt, Area, Coverage, Point, Ring, Robot, Scene, Stroke, Work
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
@@ -37,9 +37,6 @@ _POCKETS = 5e-4
 
 _REMEMBERED = 32
 """Targets at most whose swaths are kept for the next robot."""
-
-_CUTS = 16
-"""Places at most at which one stroke may be split."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +54,7 @@ class Sweep:
         speed: largest speed on the strokes, metres per second; None: see `Stroke`.
         slow_down: see `Stroke`.
         passing: name of the device's action that does the same in passing; None: the robot stops for each.
+        interval: seconds between two of them in passing, at least.
         start: where the first stroke should be near, such as the task's initial position; None: anywhere.
         pattern: in which the strokes are laid and ordered.
     """
@@ -71,6 +69,7 @@ class Sweep:
     speed: float | None = None
     slow_down: float | None = None
     passing: str | None = None
+    interval: float = 0.0
     start: Point | None = None
     pattern: Pattern = field(default_factory=Pattern)
 
@@ -220,10 +219,8 @@ def _strokes(line: Swath, sweep: Sweep) -> Iterator[Stroke]:
         return
     for leg in _legs(line):
         stroke = _stroke(leg, sweep)
-        if len(leg.spots) > 1:
-            every = trigger_distance(leg.length, sweep.length, sweep.speed or 0.0)
-            stroke = replace(stroke, actions=(), repetition=Repetition(every, sweep.passing, sweep.device))
-        yield stroke
+        photos = sweep.length, sweep.passing, sweep.device, sweep.interval
+        yield in_passing(stroke, *photos) if len(leg.spots) > 1 else stroke
 
 
 def _legs(line: Swath) -> Iterator[Swath]:
@@ -244,13 +241,13 @@ def _legs(line: Swath) -> Iterator[Swath]:
 def _between(at: Sequence[float]) -> tuple[float, ...]:
     """Return cuts midway between neighbouring actions, evenly thinned."""
     middles = [(one + two) / 2 for one, two in pairwise(at)]
-    if len(middles) <= _CUTS:
+    if len(middles) <= MOST_CUTS:
         return tuple(middles)
-    picks = np.unique(np.linspace(0, len(middles) - 1, _CUTS + 2).round().astype(int)[1:-1])
+    picks = np.unique(np.linspace(0, len(middles) - 1, MOST_CUTS + 2).round().astype(int)[1:-1])
     return tuple(middles[i] for i in picks)
 
 
 def _even(length: float, width: float) -> tuple[float, ...]:
     """Return cuts at even distances, not nearer to each other than twice the strip's width."""
-    count = min(_CUTS, floor(length / (2 * width)))
+    count = min(MOST_CUTS, floor(length / (2 * width)))
     return tuple(length * i / (count + 1) for i in range(1, count + 1)) if count else ()

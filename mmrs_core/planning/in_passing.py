@@ -6,14 +6,18 @@ Keys of a camera's properties, as text: ``capture.interval``, the shortest time 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil, inf
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import figure
-from mmrs_core.scene import Device, Robot
+from mmrs_core.scene import Device, Repetition, Robot, Stroke
 
 EXPOSURE_KEY, INTERVAL_KEY = "exposure.time", "capture.interval"
 
+
+MOST_CUTS = 16
+"""Places at most at which one stroke may be split."""
 
 NOTICING = 0.05
 """Seconds by which an autopilot triggers late, at most; in a simulation of one, 0.1 m late at 4.8 m/s."""
@@ -32,6 +36,29 @@ def trigger_distance(length: float, spacing: float, speed: float) -> float:
     """
     most = spacing - min(NOTICING * speed, spacing / 2.0)
     return length / ceil(length / most - 1e-6)
+
+
+def in_passing(stroke: Stroke, spacing: float, action: str, device: str, interval: float) -> Stroke:
+    """Return a stroke along which images are taken in passing instead, spread evenly from end to end.
+
+    It may be split where there is an image: both parts then have one there.
+
+    Args:
+        stroke: with its largest speed.
+        spacing: metres between two images, at most.
+        action: of the device, with a distance.
+        device: its identifier.
+        interval: seconds between two images, at least; where these are nearer than `spacing`, the robot is
+            slower.
+    """
+    length, speed = stroke.length, stroke.speed
+    every = trigger_distance(length, spacing, speed or 0.0)
+    if interval > 0.0:
+        speed = min(every / interval, inf if speed is None else speed)
+    images = [index * every for index in range(1, round(length / every))]
+    few = -(-len(images) // MOST_CUTS) or 1
+    repetition = Repetition(every, action, device)
+    return replace(stroke, actions=(), speed=speed, repetition=repetition, cuts=tuple(images[few - 1 :: few]))
 
 
 def passing_speed(

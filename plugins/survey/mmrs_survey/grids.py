@@ -47,6 +47,7 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
             speed=capture.speed,
             slow_down=None if capture.speed is None else 1.0,
             passing=capture.passing,
+            interval=capture.interval,
             start=(entry[0], entry[1]),
             pattern=pattern_of(part),
         ),

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from math import inf
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.in_passing import passing_speed
+from mmrs_core.planning.devices import figure
+from mmrs_core.planning.in_passing import INTERVAL_KEY, passing_speed
 from mmrs_core.scene import DISTANCE, Device, Part, Robot
 from mmrs_core.scene.attributes import number, text
 from mmrs_survey.camera import pixel_at
@@ -22,11 +23,13 @@ class Capture:
         passing: action of the camera that takes them in passing; None: the robot stops for each.
         speed: largest, metres per second; None: as on any way.
         notes: why it stops where the task leaves that open.
+        interval: seconds between two in passing, at least.
     """
 
     passing: str | None
     speed: float | None
     notes: tuple[str, ...] = ()
+    interval: float = 0.0
 
 
 def capture_of(part: Part, robot: Robot, camera: Device, spacing: float, height: float) -> Capture:
@@ -50,7 +53,8 @@ def capture_of(part: Part, robot: Robot, camera: Device, spacing: float, height:
                 "in passing"
             )
         blur, pixel = number(part, "blur") or 0.0, pixel_at(camera.properties, height)
-        return Capture(action, passing_speed(camera, robot, spacing, pixel, blur, speed or inf))
+        speed = passing_speed(camera, robot, spacing, pixel, blur, speed or inf)
+        return Capture(action, speed, interval=figure(camera.properties, INTERVAL_KEY) or 0.0)
     except InfeasibleError as error:
         if asked == IN_PASSING:
             raise

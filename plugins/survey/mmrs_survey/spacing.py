@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import device_for
-from mmrs_core.scene import ActionAt, Device, Part, Position, Repetition, Robot, Stroke
+from mmrs_core.planning.in_passing import in_passing
+from mmrs_core.scene import ActionAt, Device, Part, Position, Robot, Stroke
 from mmrs_core.scene.attributes import number, text
 from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of
 from mmrs_survey.lines import cuts_between, even_distances, length_of
@@ -68,7 +69,7 @@ def photographed(part: Part, line: tuple[Position, ...], shots: Shots) -> Stroke
     if how.passing is None or len(at) == 1:
         action = text(part, "actionName")
         return replace(stroke, actions=tuple(ActionAt(where, action, shots.camera.id) for where in at))
-    return replace(stroke, repetition=Repetition(shots.every, how.passing, shots.camera.id))
+    return in_passing(stroke, shots.every, how.passing, shots.camera.id, how.interval)
 
 
 def spacing_of(part: Part, device: Device, altitude: float) -> Footprint:

@@ -5,6 +5,7 @@ import shapely
 from mmrs_survey.grids import photo_grid_work, spacing_of
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.strokes import parts_of
 
 SHELL = ((0.0, 0.0, 0.0), (90.0, 0.0, 0.0), (90.0, 60.0, 0.0), (45.0, 30.0, 0.0), (0.0, 60.0, 0.0))
 PIXELS = {"image.width": "1200", "image.height": "800"}
@@ -167,7 +168,18 @@ def test_photos_in_passing_are_never_farther_apart_than_the_grid(snapper, scene,
 )
 def test_the_camera_limits_the_speed_in_passing(snapper, scene, task, more, properties, expected):
     strokes = photo_grid_work(in_passing(task, **more), snapper(**properties), scene()).strokes
-    assert {round(stroke.speed, 9) for stroke in strokes} == {expected}
+    interval = float(properties.get("capture.interval", 1.0))
+    for stroke in strokes:
+        ready = stroke.repetition.every / interval if stroke.repetition else expected
+        assert stroke.speed == pytest.approx(min(expected, ready))
+
+
+def test_the_camera_is_ready_for_each_photo_wherever_a_swath_is_divided(snapper, scene, task):
+    strokes = photo_grid_work(in_passing(task), snapper(**{"capture.interval": "4"}), scene()).strokes
+    for stroke in (each for each in strokes if each.repetition):
+        for part in (stroke, *parts_of(stroke)):
+            assert min(b - a for a, b in pairwise(part.spots)) >= 4.0 * stroke.speed - 1e-6
+            assert max(b - a for a, b in pairwise(part.spots)) <= 12.0 + 1e-9
 
 
 @pytest.mark.parametrize("capture", ["AUTOMATIC", "AT_STOPS"])

@@ -215,5 +215,6 @@ def test_more_than_can_be_planned_is_refused_at_once(robot, scene, task, feature
 def test_photos_along_a_line_are_taken_in_passing_by_a_camera_that_can(snapper, scene, task):
     given = {"photoDistance": 50.0, "capture": "AUTOMATIC", "triggerAction": "TriggerByDistance", "blur": 0.5}
     (stroke,) = road_work(road(task, **given), snapper(), scene()).strokes
-    assert stroke.spots == (0.0, 50.0, 100.0, 150.0, 180.0)
-    assert (stroke.actions, stroke.repetition.device, stroke.speed) == ((), "camera", 50.0)
+    assert stroke.spots == (0.0, 45.0, 90.0, 135.0, 180.0)
+    assert stroke.cuts == (45.0, 90.0, 135.0)
+    assert (stroke.actions, stroke.repetition.device, stroke.speed) == ((), "camera", 45.0)
