@@ -99,8 +99,9 @@ def _closed(
     """Yield where no robot may be that does the task, and what that closes in."""
     grown: list[list[BaseGeometry]] = []
     up = number(task, "altitude") or 0.0
-    for robot in serving:
-        kind, speeds = type_of(given, robot), (move.speed or 0.0 for move in robot.moves)
+    speeds = {move.speed or 0.0 for robot in given.program.robots for move in robot.moves}
+    for robot in serving:  # planned to keep room for what tasks command, whoever does these
+        kind = type_of(given, robot)
         room = kinematics_of(given, robot).room(*speeds)
         clearance = half_diagonal_of(kind) + given.program.position_error + room
         grown.append(

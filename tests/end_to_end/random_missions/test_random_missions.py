@@ -47,15 +47,17 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
 
 @pytest.mark.parametrize(
     "seed",
-    [101050, 101709, 103012, 104827, 202280, 300112, 300229],
+    [101050, 101709, 103012, 104827, 202280, 295361, 300112, 300229, 310445],
     ids=[
         "quicker than it cruises through a corridor",
         "a relay waits for a robot in a corridor",
         "a robot that may be early waits for another",
         "photos of all but a hundred-thousandth",
         "a robot goes home once it needs no relay",
+        "photos by a robot that is not as quick as others",
         "times, a crew and priorities",
         "a choice",
+        "a cross hatch by robots of two types",
     ],
 )
 def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):
