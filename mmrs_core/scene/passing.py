@@ -134,7 +134,7 @@ def _turning(timing: LegTiming, before: Leg, after: Leg) -> float:
     if half <= STRAIGHT or timing.corner_radius == inf:
         return inf
     apart = timing.corner_radius / (2.0 * half)
-    return 2.0 * covering(apart, timing.acceleration, timing.jerk)
+    return min(timing.corner_seconds / half, 2.0 * covering(apart, timing.acceleration, timing.jerk))
 
 
 def _half_turn(before: _Way, after: _Way) -> float | None:

@@ -39,6 +39,8 @@ class LegTiming:
         speed: largest that it makes, metres per second.
         climb, descent: largest that it makes, metres per second.
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
+        corner_seconds: for which it is on both legs at a corner that it passes, at most, if it turns right
+            round; otherwise divided by the sine of half the turn.
         passes: whether it passes places; otherwise it comes to a stop at each.
         turning: share of its acceleration with which it goes round a corner that it passes, for which it
             slows down; 0: it begins the next leg before the end of the last one.
@@ -88,6 +90,7 @@ class LegTiming:
     climb: float = inf
     descent: float = inf
     corner_radius: float = inf
+    corner_seconds: float = inf
     passes: bool = True
     turning: float = 0.0
     level_within: float = inf

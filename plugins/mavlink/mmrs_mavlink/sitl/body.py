@@ -343,7 +343,9 @@ class Body:
         figures = self.figures
         if figures.slows_down or not figures.passes or self.onward is None or self._goal != target:
             return
-        if not leg.slows:
+        beyond = plus(self.onward, target, -1.0)
+        half = half_turn(leg.path, beyond) or 0.0
+        if not leg.slows or leg.left * half > figures.corner_seconds:
             return
         following, half = self._leg(target, self.onward), leg.left / 2.0
         before, after = leg.length - leg.at(leg.elapsed + half)[0], following.at(half)[0]

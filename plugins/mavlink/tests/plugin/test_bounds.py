@@ -370,6 +370,18 @@ def test_a_px4_that_passes_places_on_a_mission_takes_what_was_measured(speed, me
     assert taken(rates, [metres] * 8, degrees) == pytest.approx(measured, rel=0.1)
 
 
+@pytest.mark.parametrize(
+    ("speed", "metres", "degrees", "measured"),
+    [(1.0, 10.0, 45.0, 10.0), (2.0, 20.0, 90.0, 10.1), (3.0, 30.0, 90.0, 11.1), (4.0, 40.0, 60.0, 11.5)],
+)
+def test_a_rover_that_passes_places_on_a_mission_takes_what_was_measured(speed, metres, degrees, measured):
+    """Flown by ArduRover 4.7-dev; 2 m/s judges what the others calibrated."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "rover")
+    assert taken(Rates(speed, 1.0, 1.0, autopilot.mission), [metres] * 8, degrees) == pytest.approx(
+        measured, rel=0.05
+    )
+
+
 def test_a_px4_stops_for_a_place_that_is_higher_or_lower_and_does_not_settle():
     """Legs of 15 m at 5 m/s with 3 m up or down took 5.1 to 5.5 s on a mission."""
     figures = PX4_MULTICOPTER.pacing.mission
