@@ -7,16 +7,20 @@ Nothing here is estimated. The plan's own decisions (who does which task, in whi
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from graphlib import TopologicalSorter
 from itertools import pairwise
 from math import dist, inf
 
+from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.corridors import gone_through
 from mmrs_core.planning.critical_path import Link, critical_path
-from mmrs_core.planning.jobs import Job, jobs_of
+from mmrs_core.planning.departures import begun_no_earlier, without_charges
+from mmrs_core.planning.jobs import Job, is_control, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
+from mmrs_core.planning.planner import plan
 from mmrs_core.planning.relaying import without_relays
 from mmrs_core.planning.schedule import Decisions, Schedule, schedule
 from mmrs_core.planning.search import broken_times
@@ -29,6 +33,9 @@ _MOST = 400_000
 
 _NEAREST = 5
 """Other robots that are tried for a task: those whose homes or tasks are nearest to it."""
+
+_FEW_PAIRS = 100
+"""Jobs times robots up to which the mission is planned once more without each limit."""
 
 _SAME = 0.05
 """Seconds below which schedules are the same."""
@@ -129,7 +136,7 @@ def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanat
 class _Explaining:
     def __init__(self, scene: Scene, plan: Plan, timed: Plan) -> None:
         self._whole_scene, self._whole = scene, plan
-        scene, plan = without_relays(scene, plan)
+        scene, plan = without_relays(begun_no_earlier(scene, plan.earliest), plan)
         self._scene, self._plan, self._timed, self._jobs = scene, plan, timed, jobs_of(scene)
         self._groups = _groups(plan)
         self._decisions = Decisions(_order(plan, self._jobs), self._groups)
@@ -278,8 +285,11 @@ class _Explaining:
             yield Limit("separation", self._plan.makespan - soonest, words)
         if any(job.after for job in self._jobs):
             jobs = [replace(job, after=()) for job in self._jobs]
-            yield Limit("dependencies", self._sooner(scene, jobs), _waits_in(critical_path(self._plan)))
-        if any(task.earliest for task in scene.tasks):
+            forks = any(is_control(task) for task in scene.tasks)
+            free = scene if forks else replace(scene, dependencies=())
+            sooner = self._sooner(free, jobs, again=not forks)
+            yield Limit("dependencies", sooner, _waits_in(critical_path(self._plan)))
+        if any(task.earliest for task in self._whole_scene.tasks):
             tasks = tuple(replace(task, earliest=None) for task in scene.tasks)
             yield Limit("earliest times", self._sooner(replace(scene, tasks=tasks), self._jobs))
         if margin := self._deadline():
@@ -288,14 +298,33 @@ class _Explaining:
             yield self._numbers()
         if used := self._corridors():
             yield Limit("corridors", self._sooner(replace(scene, corridors=()), self._jobs), used)
+        if scene.transit_altitude is not None:
+            sooner = self._sooner(replace(scene, transit_altitude=None), self._jobs)
+            yield Limit("transitAltitude", sooner, f"robots transit at {scene.transit_altitude:g} m")
         if margin := self._charge():
             yield Limit("charge", self._without_charge(), margin)
 
-    def _sooner(self, scene: Scene, jobs: Sequence[Job], decisions: Decisions | None = None) -> float:
-        """Return by how many seconds the mission ends sooner in a scene like it."""
+    def _sooner(
+        self, scene: Scene, jobs: Sequence[Job], decisions: Decisions | None = None, *, again: bool = True
+    ) -> float:
+        """Return by how many seconds the mission ends sooner in a scene like it.
+
+        Args:
+            scene: without a limit.
+            jobs: of it.
+            decisions: for it; None: the plan's.
+            again: whether a small scene is planned once more, too.
+        """
         team = Team(scene)
         found = schedule(team, jobs, decisions or self._decisions)
-        return max(0.0, max(self._ends) - max(_ends_of(team, found))) if isinstance(found, Schedule) else 0.0
+        sooner = max(self._ends) - max(_ends_of(team, found)) if isinstance(found, Schedule) else 0.0
+        if again and len(jobs) * len(scene.robots) <= _FEW_PAIRS:
+            asked = {task.name: task.earliest for task in self._whole_scene.tasks}
+            held = {task.name for task in scene.tasks if task.earliest is not None} & set(self._plan.earliest)
+            with suppress(InfeasibleError):
+                other = plan(begun_no_earlier(scene, {name: asked[name] for name in held}))
+                sooner = max(sooner, self._plan.makespan - other.makespan)
+        return max(0.0, sooner)
 
     def _numbers(self) -> Limit:
         tasks = tuple(replace(task, wanted=None) for task in self._scene.tasks)
@@ -307,12 +336,7 @@ class _Explaining:
     def _without_charge(self) -> float:
         if all(each.sorties < 2 for each in self._plan.robots):
             return 0.0
-        robots = tuple(
-            replace(robot, kinematics=replace(robot.kinematics, endurance=inf, energy=inf))
-            for robot in self._scene.robots
-            if robot.kinematics is not None
-        )
-        return self._sooner(replace(self._scene, robots=robots), self._jobs)
+        return self._sooner(without_charges(self._scene), self._jobs)
 
     def _charge(self) -> str:
         """Return which sortie is nearest to its limit, in words; empty where there is no limit."""

@@ -14,6 +14,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble, idle_apart
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.deconfliction import alternatives, best_signalled, better, kept_apart, unasked_returns
+from mmrs_core.planning.departures import begun_no_earlier, waiting_at_home
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, with_remedies
@@ -71,15 +72,33 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     """
     if relay_tasks(scene):
         return plan_with_relays(scene, lambda part, its: plan(part, seed=seed, effort=its), effort)
+    effort = effort or Effort()
+    found, refusal = None, InfeasibleError("no plan")
+    try:
+        found = _planned(scene, seed, effort)
+    except InfeasibleError as error:
+        refusal = error
+    for earliest in waiting_at_home(scene, found, lambda part: _planned(part, seed, Effort())):
+        with suppress(InfeasibleError):
+            if not effort.stopped:
+                made = _planned(begun_no_earlier(scene, earliest), seed, Effort())
+                bound = least_makespan(Team(scene), jobs_of(scene))
+                found = better(replace(made, lower_bound=bound, earliest=earliest), found)
+    if found is None:
+        raise refusal
+    return found
+
+
+def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
+    """Return a plan of a scene without relays, as it is."""
     jobs = jobs_of(scene)
     team = Team(scene)
     if short := [*with_remedies(team, jobs), *shared_choices(scene, jobs)]:
         able = [*_alone([job for job in jobs if all(map(team.able, job.tasks()))])]
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
-    effort = effort or Effort()
     unlimited: Plan | None = None
     if (free := _without_limits(scene)) != scene:
-        unlimited = plan(free, seed=seed, effort=effort.trial())
+        unlimited = _planned(free, seed, effort.trial())
         if not broken_times(team, _spans(unlimited)):
             return unlimited
     teams = _Remembered(teams_to_try(team))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mmrs_core.scene.primitives import Position
 from mmrs_core.scene.works import Stroke
@@ -174,7 +174,8 @@ class Plan:
         left_out: what is not done of tasks, since it cannot be reached.
         lower_bound: seconds that no plan's makespan by the planner's times falls below; 0: nothing is known.
         planned: makespan by the planner's times, where `makespan` is another; 0: it is the same.
-        unseparated: of the best plan that was found in which robots need not keep apart; 0: there is none.
+        earliest: by task: seconds before which it does not begin in the plan, so that robots wait at home.
+        unseparated: makespan of the best plan found in which robots need not keep apart; 0: there is none.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -186,3 +187,4 @@ class Plan:
     lower_bound: float = 0.0
     planned: float = 0.0
     unseparated: float = 0.0
+    earliest: Mapping[str, float] = field(default_factory=dict)

@@ -77,7 +77,8 @@ def test_a_robot_does_not_wait_aloft_longer_than_its_charge_bears_if_another_is_
     }
     for timing, recharges in ((LegTiming(), 0), (LegTiming(spread=0.3), 1)):
         other = with_kinematics(robot("r2", (40.0, 0.0, 0.0)), cruise=5.0, timing=timing)
-        whole = scene((lone, other), works, after=[("first", "b"), ("long", "b")])
+        after, soon = [("first", "b"), ("long", "b")], {"first": task("first", deadline=27.0)}
+        whole = scene((lone, other), works, after=after, tasks=soon)
         assert len(steps_of(sound(whole), "r1", Recharge)) == recharges
 
 

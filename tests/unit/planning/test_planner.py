@@ -207,7 +207,8 @@ def test_a_robot_that_is_away_waits_where_its_work_begins():
         "first": {"r2": visit((60.0, 0.0, 20.0))},
         "b": {"r2": visit((30.0, 0.0, 20.0))},
     }
-    whole = scene(TWO, works, after=[("a", "b"), ("first", "b")])
+    soon = {"first": task("first", deadline=16.0)}
+    whole = scene(TWO, works, after=[("a", "b"), ("first", "b")], tasks=soon)
     steps = sound(whole).robots[1].steps
     wait = next(i for i, step in enumerate(steps) if isinstance(step, Await))
     assert isinstance(steps[wait + 1], Serve)
