@@ -71,8 +71,19 @@ class Stages:
     @cached_property
     def plan(self) -> Plan:
         """Return who does what, when and along which path."""
+        from mmrs_core.simulation.overdue import plan_in_time
+
         scene = self.scene
-        return self.stage("plan", lambda: self.planned(scene, self._seed))
+        return self.stage(
+            "plan", lambda: plan_in_time(scene, lambda part: self.planned(part, self._seed), self._simulated)
+        )
+
+    def _simulated(self, made: Plan) -> Plan | None:
+        """Return a plan with the times of its simulated behaviour; None: its run does not succeed."""
+        behaviour, trace = transform(self.scene, made, self._contributions)
+        program = program_of(behaviour, self._contributions)
+        found = self._as_simulated(made, program, trace)
+        return None if isinstance(found, str) else found
 
     def planned(self, scene: Scene, seed: int) -> Plan:
         """Return the plan of an expanded scene."""
@@ -96,19 +107,23 @@ class Stages:
         Where choices depend on what is not known yet, or the simulation fails, the planner's times remain,
         and a note gives the reason.
         """
+        found = self._as_simulated(self.plan, self.program, self.transformed[1])
+        if isinstance(found, str):
+            return replace(self.plan, notes=(f"times are the planner's: {found}", *self.plan.notes))
+        return found
+
+    def _as_simulated(self, made: Plan, program: Program, trace: Trace) -> Plan | str:
+        """Return a plan with the times that its behaviour is simulated to take, or why that is not known."""
         from mmrs_core.simulation.plan_times import as_simulated
         from mmrs_runtime.semantics import Outcome
 
         try:
-            run = simulate(self.program, self.place, self._contributions)
+            run = simulate(program, self.place, self._contributions)
         except MmrsError as error:
-            return self._untimed(str(error))
+            return str(error)
         if run.ending.outcome is not Outcome.SUCCESS:
-            return self._untimed(f"the simulated run ends with '{run.ending.outcome.value}'")
-        return as_simulated(self.plan, run, self.transformed[1], self.program.robots)
-
-    def _untimed(self, reason: str) -> Plan:
-        return replace(self.plan, notes=(f"times are the planner's: {reason}", *self.plan.notes))
+            return f"the simulated run ends with '{run.ending.outcome.value}'"
+        return as_simulated(made, run, trace, program.robots)
 
     @property
     def place(self) -> BehaviourContext:

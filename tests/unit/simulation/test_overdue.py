@@ -1,0 +1,59 @@
+"""Deadlines are kept as the behaviour is simulated, which may take longer than planned."""
+
+from dataclasses import replace
+
+import pytest
+from plain_scenes import robot, scene, task, visit
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.planner import plan
+from mmrs_core.simulation.overdue import plan_in_time
+
+WORKS = {"near": visit((100.0, 0.0, 20.0), hold=10.0), "far": visit((300.0, 0.0, 20.0), hold=10.0)}
+
+
+def later(made):
+    """Return a plan whose tasks take a tenth longer, from the mission's start on."""
+    longer = ({name: 1.1 * time for name, time in times.items()} for times in (made.begins, made.ends))
+    begins, ends = longer
+    return replace(made, begins=begins, ends=ends)
+
+
+def test_a_task_that_would_be_late_in_the_simulation_is_done_earlier():
+    """By the planner's times the nearer one first keeps both deadlines; the farther one is late then."""
+    tasks = {"near": task("near", deadline=120.0), "far": task("far", deadline=65.0)}
+    whole, asked = scene([robot()], WORKS, tasks=tasks), []
+
+    def planned(part):
+        asked.append([each.deadline for each in part.tasks])
+        return plan(part)
+
+    made = plan_in_time(whole, planned, later)
+    assert asked[0] == [120.0, 65.0]
+    assert asked[1][1] < 65.0
+    assert later(made).ends["far"] <= 65.0
+    assert later(made).ends["near"] <= 120.0
+
+
+def test_a_deadline_that_no_behaviour_keeps_is_refused_with_one_that_would_do():
+    whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=55.0)})
+    assert plan(whole).ends["far"] < 55.0
+    with pytest.raises(
+        InfeasibleError, match=r"as it is simulated: task 'far' ends 57 s .* a deadline of 57 s"
+    ):
+        plan_in_time(whole, plan, later)
+    enough = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=57.0)})
+    assert plan_in_time(enough, plan, later) == plan(enough)
+
+
+def test_a_duration_that_the_behaviour_exceeds_is_refused():
+    whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", longest=10.5)})
+    with pytest.raises(
+        InfeasibleError, match=r"task 'far' takes 11 s, 10\.5 s are allowed: 1 s too long; 11 s"
+    ):
+        plan_in_time(whole, plan, later)
+
+
+def test_a_plan_whose_behaviour_cannot_be_simulated_is_kept():
+    whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=55.0)})
+    assert plan_in_time(whole, plan, lambda _: None) == plan(whole)
