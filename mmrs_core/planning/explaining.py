@@ -34,7 +34,7 @@ _MOST = 400_000
 _NEAREST = 5
 """Other robots that are tried for a task: those whose homes or tasks are nearest to it."""
 
-_FEW_PAIRS = 100
+_FEW_PAIRS = 40
 """Jobs times robots up to which the mission is planned once more without each limit."""
 
 _SAME = 0.05
@@ -322,8 +322,8 @@ class _Explaining:
             asked = {task.name: task.earliest for task in self._whole_scene.tasks}
             held = {task.name for task in scene.tasks if task.earliest is not None} & set(self._plan.earliest)
             with suppress(InfeasibleError):
-                other = plan(begun_no_earlier(scene, {name: asked[name] for name in held}))
-                sooner = max(sooner, self._plan.makespan - other.makespan)
+                other = plan(begun_no_earlier(_near(scene), {name: asked[name] for name in held}))
+                sooner = max(sooner, (self._whole.unseparated or max(self._ends)) - other.makespan)
         return max(0.0, sooner)
 
     def _numbers(self) -> Limit:
@@ -375,6 +375,11 @@ class _Explaining:
             if task.deadline is not None and task.name in self._timed.ends
         ]
         return f"'{min(spare)[1]}' ends {min(spare)[0]:.0f} s before its deadline" if spare else ""
+
+
+def _near(scene: Scene) -> Scene:
+    """Return the scene in which robots may come as near to each other as they like."""
+    return scene if scene.minimum_separation is None else replace(scene, minimum_separation=0.0)
 
 
 def _waits_in(chain: Sequence[Link]) -> str:
