@@ -214,11 +214,14 @@ def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
 
 def photo(pilot: SimulatedAutopilot, number: int) -> Message:
     """Return the report of a photo, counted from 1: ArduPilot's message, or that of a camera for PX4."""
-    place = pilot.degrees_at(pilot.photos[number - 1])
+    place, up = pilot.degrees_at(at := pilot.photos[number - 1]), pilot.settings.altitude + at[2]
+    above = up - pilot.home[2]
     if pilot.px4:
         captured = {"image_index": number, "capture_result": 1, "q": (1.0, 0.0, 0.0, 0.0), "file_url": b""}
+        captured |= {"alt": round(up * 1000), "relative_alt": round(above * 1000)}
         return message("camera_image_captured", **_scaled(*place), **captured)
-    return message("camera_feedback", img_idx=number, **_scaled(*place, "lat", "lng"))
+    position = _scaled(*place, "lat", "lng")
+    return message("camera_feedback", img_idx=number, **position, alt_msl=up, alt_rel=above)
 
 
 def _home(pilot: SimulatedAutopilot) -> Message:

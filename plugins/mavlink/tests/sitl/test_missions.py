@@ -8,6 +8,7 @@ from simulated import Bench
 
 from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.telemetry import mission_current
+from mmrs_mavlink.sitl.telemetry import photo as photo_report
 
 CORNER = (0.0, 60.0, 20.0)
 LEGS = ((0.0, 10.0, 20.0), CORNER, (60.0, 60.0, 20.0), (60.0, 100.0, 20.0))
@@ -102,6 +103,9 @@ def test_a_photo_is_taken_in_sequence(bench):
     flown(bench, *first, plain(PHOTO, x=1), bench.item(LOITER, (0.0, 40.0, 20.0)), until=3)
     (photo,) = bench.pilot.photos
     assert hypot(photo[0], photo[1] - 20.0) < 0.5
+    report = photo_report(bench.pilot, 1)
+    above = report.relative_alt * 1e-3 if bench.pilot.px4 else report.alt_rel
+    assert above == pytest.approx(20.0, abs=0.5)
 
 
 def test_photos_by_distance_are_taken_in_passing_and_once_more_at_their_end(bench):
