@@ -27,12 +27,16 @@ Robots = Annotated[
     typer.Option("--robots", metavar="FILE...", help="Robot types. Default: robots/*.xmi next to the input."),
 ]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Planner random seed.")]
+LONGEST_SEARCH = 1e6
+"""Seconds: eleven days."""
+
 TimeLimit = Annotated[
     float | None,
     typer.Option(
         "--time-limit",
         metavar="SECONDS",
         min=0.0,
+        max=LONGEST_SEARCH,
         help="Search for a better plan for SECONDS. Default: a number of steps, the same plan each time.",
     ),
 ]
