@@ -78,19 +78,24 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         found = _planned(scene, seed, effort)
     except InfeasibleError as error:
         refusal = error
-    for earliest in waiting_at_home(scene, found, lambda part: _planned(part, seed, Effort())):
+
+    def planned_again(part: Scene) -> Plan:
+        if effort.stopped:
+            raise InfeasibleError("no plan: the search was stopped")
+        return _planned(part, seed, Effort())
+
+    for earliest in waiting_at_home(scene, found, planned_again):
         with suppress(InfeasibleError):
-            if not effort.stopped:
-                made = _planned(begun_no_earlier(scene, earliest), seed, Effort())
-                bound = least_makespan(Team(scene), jobs_of(scene))
-                found = better(replace(made, lower_bound=bound, earliest=earliest), found)
+            made = planned_again(begun_no_earlier(scene, earliest))
+            bound = least_makespan(Team(scene), jobs_of(scene)) if found is None else found.lower_bound
+            found = better(replace(made, lower_bound=bound, earliest=earliest), found)
     if found is None:
-        raise refusal
+        raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return found
 
 
 def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
-    """Return a plan of a scene without relays, as it is."""
+    """Return a plan of a scene without relays, as it is; reasons of a refusal are not sought yet."""
     jobs = jobs_of(scene)
     team = Team(scene)
     if short := [*with_remedies(team, jobs), *shared_choices(scene, jobs)]:
@@ -122,7 +127,7 @@ def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
         found, best = made, best if made is found else wanted
     found = best_signalled(scene, dear, found)
     if found is None:
-        raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
+        raise refusal
     soonest = min(tried.values())
     return replace(idle_apart(scene, found, tried), lower_bound=effort.least, unseparated=soonest)
 
@@ -246,7 +251,7 @@ def _too_near(team: Team, jobs: Sequence[Job], refusal: TooNearError, unlimited:
         if remedies or rounded <= 0.0 or len(jobs) * len(scene.robots) > _FEW_PAIRS:
             break
         with suppress(InfeasibleError):
-            plan(replace(scene, minimum_separation=rounded))
+            _planned(replace(scene, minimum_separation=rounded), 0, Effort())
             remedies.append(f"a minimumSeparation of {rounded:g} m")
     if unlimited is not None:
         remedies.append(" with ".join(later_times(team, _spans(unlimited))))

@@ -7,6 +7,7 @@ import pytest
 from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning import planner
 from mmrs_core.planning.planner import plan
 from mmrs_runtime.timing import LegTiming
 
@@ -202,6 +203,18 @@ def test_deadlines_that_are_proposed_where_robots_cannot_keep_apart_in_time_can_
     assert plan(replace(whole, minimum_separation=float(least)))
     later = (replace(each, deadline=float(late)) if each.name == name else each for each in whole.tasks)
     assert plan(replace(whole, tasks=tuple(later)))
+
+
+def test_remedies_for_robots_that_cannot_keep_apart_are_not_explained_in_turn(monkeypatch):
+    """No distance will do: with each that is tried there would be reasons, and remedies for these."""
+    calls, planned = [], planner._planned
+    monkeypatch.setattr(planner, "_planned", lambda *given: calls.append(given) or planned(*given))
+    team = (robot("r1"), robot("r2", (14.0, 0.0, 0.0)))
+    places = {"a": (100.0, 100.0, 30.0), "b": (100.2, 100.0, 30.0)}
+    works = {name: {f"r{k}": visit(at, hold=20.0)} for k, (name, at) in enumerate(places.items(), 1)}
+    tasks = {name: task(name, earliest=50.0, deadline=90.0) for name in works}
+    assert "a deadline of" in refusal(scene(team, works, tasks=tasks, minimum_separation=10.0))
+    assert len(calls) <= 10
 
 
 RING = [
