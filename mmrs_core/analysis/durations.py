@@ -84,7 +84,7 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
     for leg in motion.paths:
         legs[leg.move].append(leg)
     local = input.program.frame.is_local
-    passages = Passages(robot, input.move_kinds, kinematics, local=local)
+    passages = Passages(robot, robot_type, input.move_kinds, kinematics, local=local)
     passed, begun = _passed(robot, passages, legs, kinematics.cruise), _begun(robot, passages, legs)
     gaps = {gap.move: gap for gap in motion.gaps}
     found: dict[int, Duration] = {}

@@ -16,13 +16,16 @@ from mmrs_core.scene.passing import SHORTEST_RUN, passed
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram, Transition
-    from mmrs_core.scene import Kinematics, Name, Position
+    from mmrs_core.scene import Kinematics, Name, Position, RobotType
     from mmrs_core.scene.passing import Passage
     from mmrs_core.scene.timing import Push
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 STRAIGHT_DEGREES = 10.0
 """Up to where a turn is none, so that a vehicle that keeps to its legs passes it without a stop."""
+
+_SAME_DEGREES = 0.1
+"""Short legs turn more, where their places were rounded for a file."""
 
 
 class Passages:
@@ -34,12 +37,19 @@ class Passages:
     """
 
     def __init__(
-        self, robot: RobotProgram, move_kinds: Mapping[Name, MoveKind], kinematics: Kinematics, *, local: bool
+        self,
+        robot: RobotProgram,
+        type: RobotType | None,
+        move_kinds: Mapping[Name, MoveKind],
+        kinematics: Kinematics,
+        *,
+        local: bool,
     ) -> None:
         """Find the runs of a robot.
 
         Args:
             robot: of a behaviour.
+            type: of the robot; None: not known.
             move_kinds: by metaclass.
             kinematics: of the robot.
             local: whether the behaviour has no place on the Earth, so that no mission can be uploaded.
@@ -47,7 +57,7 @@ class Passages:
         self._robot, self._move_kinds, self._kinematics = robot, move_kinds, kinematics
         self._mission, self._careful = kinematics.in_mission(), kinematics.mission is not None
         self._index = {move.id: index for index, move in enumerate(robot.moves)}
-        runs = runs_of(robot, move_kinds) if self._careful and not local else ()
+        runs = runs_of(robot, type, move_kinds) if self._careful and not local else ()
         self._uploaded = frozenset(index for run in runs for index in run)
         late = replace(self._mission.timing, settling=self._mission.timing.settling + kinematics.noticing)
         self._ending = replace(self._mission, timing=late)
@@ -134,7 +144,7 @@ class Passages:
         if acts and self._careful and index not in self._uploaded:
             return None
         flowing = not self._careful or (index in self._uploaded and not self._stops)
-        if not flowing and degrees(turn_at(path[-2], path[-1], beyond[1])) > STRAIGHT_DEGREES:
+        if not flowing and not goes_straight(path[-2], path[-1], beyond[1]):
             return None
         rates = self.kinematics(move).rates(move.speed)
         if not rates.timing.passes:
@@ -144,16 +154,29 @@ class Passages:
         return passed(rates, (path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward, push)
 
 
-def runs_of(robot: RobotProgram, move_kinds: Mapping[Name, MoveKind]) -> tuple[tuple[int, ...], ...]:
+def goes_straight(before: Position, corner: Position, after: Position) -> bool:
+    """Return whether a path turns so little at a corner that a vehicle passes it without a stop."""
+    return degrees(turn_at(before, corner, after)) <= STRAIGHT_DEGREES + _SAME_DEGREES
+
+
+def runs_of(
+    robot: RobotProgram, type: RobotType | None, move_kinds: Mapping[Name, MoveKind]
+) -> tuple[tuple[int, ...], ...]:
     """Return the runs of a robot as indices of moves, in the order of their first moves.
 
     A run is a longest chain of at least `SHORTEST_RUN` straight GoTo moves with fluid, unconditional
-    transitions without waits, and without actions inside. At the end of its first move the vehicle stops.
+    transitions without waits, and without actions inside. On the whole of it the robot looks where it goes,
+    or at one place on the Earth. At the end of its first move the vehicle stops.
+
+    Args:
+        robot: of a behaviour.
+        type: of the robot; None: not known.
+        move_kinds: by metaclass.
     """
     chained = {
         source: transition.to
         for source, transition in robot.transitions.items()
-        if _chains(robot, source, transition, move_kinds)
+        if _chains(robot, source, transition, move_kinds) and _looks_on(robot, source, transition, type)
     }
     entered = set(chained.values())
     chains = (_chain(each, chained) for each in chained if each not in entered)
@@ -178,13 +201,23 @@ def _chains(
     return alone and plain and not before.after and not after.before
 
 
+def _looks_on(robot: RobotProgram, source: int, transition: Transition, type: RobotType | None) -> bool:
+    """Return whether a robot looks ahead in two moves, or at the same place on the Earth."""
+    before, after = robot.moves[source].heading, robot.moves[transition.to].heading
+    if before is None or after is None:
+        return before is after
+    steady = before.target.position is not None and before.angle_degrees == after.angle_degrees == 0.0
+    same = before.device == after.device and before.target.position == after.target.position
+    return steady and same and (type is None or type.looks_ahead(before.device))
+
+
 def _is_plain(move: Move, move_kinds: Mapping[Name, MoveKind]) -> bool:
-    """Return whether a move goes straight to a coordinate, and looks where it goes."""
+    """Return whether a move goes straight to a coordinate."""
     name = most_specific(move.metaclasses, move_kinds)
     target = move.target
     if name is None or move_kinds[name].manoeuvre != "go_to" or target is None or target.position is None:
         return False
     east, north, up = target.position
     path = move_kinds[name].path(move, (east - 10.0, north - 10.0, up - 10.0), None)
-    plain = target.description is None and move.distance == 0.0 and move.heading is None
+    plain = target.description is None and move.distance == 0.0
     return plain and path is not None and len(path) == 2

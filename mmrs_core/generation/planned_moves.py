@@ -69,7 +69,7 @@ def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     facing: float | None = None
     push: Push | None = STANDING
     local = input.program.frame.is_local
-    passages = Passages(robot, input.move_kinds, kinematics, local=local) if kinematics is not None else None
+    passages = Passages(robot, type, input.move_kinds, kinematics, local=local) if kinematics else None
     for index in _order(robot):
         move = robot.moves[index]
         name = most_specific(move.metaclasses, input.move_kinds)

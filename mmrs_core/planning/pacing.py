@@ -22,7 +22,7 @@ from mmrs_core.planning.strokes import (
     uncertain_seconds,
 )
 from mmrs_core.planning.timeline import moves_along
-from mmrs_core.scene import ActionAt, Position, Stroke
+from mmrs_core.scene import ActionAt, Position, RobotType, Stroke
 from mmrs_core.scene.timing import MoveSeconds, acting
 
 BESIDE = 2, 2
@@ -91,7 +91,7 @@ def legs_beside(moves: int, passes: bool) -> int:
 
 def passed_at_begin(stroke: Stroke) -> bool:
     """Return whether a robot need not stop where a stroke begins."""
-    return not stroke.settles and not any(each.at <= NEAR for each in stroke.commands)
+    return not _stays(stroke) and not any(each.at <= NEAR for each in stroke.commands)
 
 
 def passed_at_end(stroke: Stroke) -> bool:
@@ -101,7 +101,12 @@ def passed_at_end(stroke: Stroke) -> bool:
 
 
 def _passes(stroke: Stroke) -> bool:
-    return not stroke.settles and not stroke.hold and stroke.object is None
+    return not _stays(stroke) and not stroke.hold and stroke.object is None
+
+
+def _stays(stroke: Stroke) -> bool:
+    """Return whether a robot stops at both ends of a stroke: it settles, or looks elsewhere beyond them."""
+    return stroke.settles or stroke.look is not None
 
 
 def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:
@@ -173,7 +178,7 @@ class _Line:
 
     def _halts(self, stroke: Stroke, pilot: Pilot) -> list[bool]:
         """Return at which of its places the robot stops for certain, corners included."""
-        halts, speed = halts_of(stroke), commanded_speed(stroke, pilot.kinematics)
+        halts, speed = halts_of(stroke, pilot.robot.type), commanded_speed(stroke, pilot.kinematics)
         corners = pilot.travel.uploading
         for i in range(1, len(halts) - 1):
             if not halts[i] and corners is not None:
@@ -209,14 +214,14 @@ class _Line:
         return end + ending, begin - beginning
 
 
-def halts_of(stroke: Stroke) -> list[bool]:
-    """Return at which of the places where a stroke stops or turns the robot stops for certain."""
-    stops = stops_of(stroke)
-    if stroke.look is not None:
+def halts_of(stroke: Stroke, type: RobotType) -> list[bool]:
+    """Return at which of the places where a stroke stops or turns a robot stops for certain."""
+    stops, look = stops_of(stroke), stroke.look
+    if look is not None and (look.angle_degrees or not type.looks_ahead(look.device)):
         return [True] * len(stops)
     arcs = accumulate((dist(one, two) for one, two in pairwise(stops)), initial=0.0)
     halts = [bool(each) for each in _due(stroke, arcs)]
-    halts[0], halts[-1] = halts[0] or stroke.settles, halts[-1] or not _passes(stroke)
+    halts[0], halts[-1] = halts[0] or _stays(stroke), halts[-1] or not _passes(stroke)
     return halts
 
 

@@ -94,7 +94,7 @@ class Team:
         self.spaces = spaces or Spaces(scene, from_homes=from_homes)
         self.homebound = homebound_of(scene) if homebound is None else homebound
         aloft = altitudes or {}
-        fluid = scene.minimum_separation is None
+        fluid = not scene.timed
         uploads = fluid and not scene.frame.is_local
         travels = {
             robot.name: Travel(

@@ -49,7 +49,7 @@ class Uploads:
             if not isinstance(step, Transit | Serve):
                 stopped = True
                 continue
-            stopped = stopped or (isinstance(step, Serve) and halts_of(step.stroke)[0])
+            stopped = stopped or (isinstance(step, Serve) and halts_of(step.stroke, pilot.robot.type)[0])
             for move, stops in _moves(step, pilot):
                 halts.append(stopped or not self._may_pass(plan.robot, moves[-1], move))
                 moves.append(move)
@@ -74,7 +74,7 @@ class Uploads:
 def _moves(step: Transit | Serve, pilot: Pilot) -> Iterator[tuple[_Move, bool]]:
     """Yield the moves of a step, and whether the robot stops for certain after each."""
     if isinstance(step, Serve):
-        speed, halts = commanded_speed(step.stroke, pilot.kinematics), halts_of(step.stroke)
+        speed, halts = commanded_speed(step.stroke, pilot.kinematics), halts_of(step.stroke, pilot.robot.type)
         for i, (start, end) in enumerate(pairwise(stops_of(step.stroke))):
             yield _Move(id(step), range(i, i + 1), start, end, speed), halts[i + 1]
         return

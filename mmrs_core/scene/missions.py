@@ -188,6 +188,8 @@ class Scene:
             `refusals`.
         refusals: by (task name, robot name): why that robot cannot do that task.
         stations: other robots that are relays at their places while those of the scene do their tasks.
+        timed: whether robots stop at every corner, so that it is certain when they are where: they are
+            several, and keep apart. False until the scene is expanded.
     """
 
     name: str
@@ -208,6 +210,7 @@ class Scene:
     works: Mapping[tuple[str, str], Work] = field(default_factory=dict)
     refusals: Mapping[tuple[str, str], str] = field(default_factory=dict)
     stations: tuple[Relay, ...] = ()
+    timed: bool = False
 
     def task(self, name: str) -> Task:
         """Return the task of that name."""

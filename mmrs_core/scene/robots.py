@@ -8,6 +8,7 @@ from math import dist, inf, pi, sqrt, tan
 from typing import Any
 
 from mmrs_core.diagnostics import Place
+from mmrs_core.scene.attributes import finite
 from mmrs_core.scene.headings import turn
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
 from mmrs_core.scene.timing import MoveSeconds, Push, Rates, bounded, noticing
@@ -135,6 +136,11 @@ class RobotType:
     devices: Mapping[str, Device]
     part: Part
     policies: tuple[Policy, ...] = ()
+
+    def looks_ahead(self, device: str) -> bool:
+        """Return whether a device looks where the front of the robot does; empty: the front itself."""
+        known = self.devices.get(device)
+        return known is None or finite(known.properties.get("mount.yaw", "0")) == 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,7 +78,7 @@ class SimulatedRobot(Vehicle):
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
         local = given.program.frame.is_local
-        self._passages = Passages(given.robot, given.move_kinds, self._kinematics, local=local)
+        self._passages = Passages(given.robot, given.type, given.move_kinds, self._kinematics, local=local)
         policies = in_precedence(given.robot.policies, given.policies)
         self._escapes = Escapes(given, self._kinematics, self._robot.home)
         self._battery = SimulatedBattery(self._kinematics, self._escapes, policies)

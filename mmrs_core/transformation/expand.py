@@ -70,7 +70,8 @@ def expand(
     reasons = list(_undoable(scene, works, refusals, radio))
     if reasons:
         raise InfeasibleError(f"{len(reasons)} of the tasks can be done by no robot", reasons)
-    return replace(scene, works=works, refusals=refusals)
+    timed = scene.minimum_separation is not None and len(robots) > 1
+    return replace(scene, works=works, refusals=refusals, timed=timed)
 
 
 def _found(

@@ -17,7 +17,7 @@ class FluidTransitions:
     def __init__(self, robot: Robot, scene: Scene, chain: Chain) -> None:
         self._robot, self._chain = robot, chain
         self._corners = Corners(robot, scene.kept_from(robot), scene.corridors_of(robot))
-        self._timed = scene.minimum_separation is not None
+        self._timed = scene.timed
         self._before = {after: edge.source for edge in chain.edges for after in (edge.to, edge.otherwise)}
 
     def may_flow(self, edge: DraftTransition) -> bool:

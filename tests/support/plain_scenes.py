@@ -110,6 +110,7 @@ def scene(robots, works, *, after=(), controls=(), tasks=None, areas=(), **featu
         tuple(robots),
         areas=tuple(areas),
         works=pairs,
+        timed=features.get("minimum_separation") is not None,
         **features,
     )
 

@@ -109,7 +109,7 @@ class Modelled:
     @cached_property
     def runs(self) -> list[list[str]]:
         """The runs of the robot, as moves."""
-        found = runs_of(self.robot, self._contributions.move_kinds)
+        found = runs_of(self.robot, self._place.types[self.robot.type_name], self._contributions.move_kinds)
         return [[self.robot.moves[index].id for index in run] for run in found]
 
     @cached_property

@@ -105,6 +105,8 @@ class Flight:
         fault: that the log must hold; empty: none may.
         deviation: metres from the planned line, at most; None: what happens leads away from it.
         timed: whether times are judged; not where the vehicle's owner lets it go more slowly than planned.
+        looks: what vehicles must look at in AUTO, metres of the origin, and within how many degrees for nine
+            tenths of that time; None: not judged.
         says: what the program must say. photos: fewest and most that the vehicle must report.
         landing: metres in the plane from the planned end, or from home, at most.
         parameters: of the vehicles, beyond those of their firmware.
@@ -125,6 +127,7 @@ class Flight:
     timed: bool = True
     says: str = ""
     photos: tuple[int, int] = (0, 0)
+    looks: tuple[float, float, float] | None = None
     landing: float = 1.0
     parameters: Mapping[str, float] = field(default_factory=dict)
     arguments: tuple[str, ...] = ()

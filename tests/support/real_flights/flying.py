@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from math import hypot, inf
+from math import atan2, degrees, hypot, inf
 from pathlib import Path
 from secrets import token_bytes
 from typing import IO
@@ -27,6 +27,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import MmrsError
 from mmrs_core.languages import behaviour
+from mmrs_runtime.controllers.geodesy import turn
 from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give
 from real_flights import plans
@@ -51,6 +52,7 @@ from real_flights.flight import (
     Resume,
 )
 from real_flights.judging import Planned, distances, landing, planned
+from real_flights.plans import AUTO, PX4_AUTO, PX4_MISSION
 from real_flights.strait import Strait
 
 KEPT = 0.9
@@ -404,6 +406,8 @@ class Flying:
                 continue
             line, plane = self.plan.line[robot], self.plan.vehicle(robot) == "rover"
             rows = self.plan.placed(robot, flown)
+            if flight.looks is not None:
+                self._judge_looks(flown, rows, *flight.looks)
             all_rows.append(distances(rows, line, plane=plane))
             result.landing = max(result.landing or 0.0, landing(rows, line))
             if (margin := self.plan.margin(robot, flown)) is not None:
@@ -419,6 +423,20 @@ class Flying:
         self._compare()
         if flight.timed and flight.ends == DONE and set(result.end.values()) == {DONE}:
             self._judge_times()
+
+    def _judge_looks(
+        self, flown: list[Fix], rows: np.ndarray, east: float, north: float, most: float
+    ) -> None:
+        """Compare where the vehicle looks on missions with the direction of a place."""
+        auto = PX4_AUTO << 16 | PX4_MISSION << 24 if self.flight.px4 else AUTO
+        beside = [
+            abs(turn(fix.hdg, degrees(atan2(east - x, north - y))))
+            for fix, (x, y, _) in zip(flown, rows, strict=True)
+            if fix.mode == auto
+        ]
+        found = float(np.percentile(beside, 90)) if beside else inf
+        if found > most:
+            self.result.deviates.append(f"looks {found:.0f} degrees beside the place")
 
     def _judge_times(self) -> None:
         """Compare what was flown with the plan, and with the bounds of its check; waits are left out."""

@@ -71,6 +71,7 @@ class Route:
         home: metres east and north of the origin.
         turns: degrees per second at which it turns to two other places at each; 0: it does not.
         photos: metres between photos that are taken in passing, on each leg; 0: none.
+        looks: what its front looks at on all legs but the first; None: it looks where it goes.
         sorties: how often it does all that. It charges before the second, whose moves are ``2-p0`` and so on.
     """
 
@@ -84,6 +85,7 @@ class Route:
     home: tuple[float, float] = (0.0, 0.0)
     turns: float = 0.0
     photos: float = 0.0
+    looks: Place | None = None
     sorties: int = 1
 
 
@@ -164,10 +166,15 @@ def _robot(number: int, route: Route, targets: list[str]) -> str:
         _target(targets, f"{route.robot} p{index}", (east + x, north + y, z))
         for index, (x, y, z) in enumerate(route.places)
     ]
-    moved = [('<moves xsi:type="behaviour:Start" name="start"/>', False), *_sortie(route, places)]
+    looks = ""
+    if route.looks is not None:
+        x, y, z = route.looks
+        looked = _target(targets, f"{route.robot} looks", (east + x, north + y, z))
+        looks = f'<heading target="{looked}"/>'
+    moved = [('<moves xsi:type="behaviour:Start" name="start"/>', False), *_sortie(route, places, looks)]
     for sortie in range(2, route.sorties + 1):
         charge = f'<moves xsi:type="behaviour:Recharge" name="{sortie}-charge" duration="{CHARGING:g}"/>'
-        moved += [(charge, False), *_sortie(route, places, f"{sortie}-")]
+        moved += [(charge, False), *_sortie(route, places, looks, f"{sortie}-")]
     moved.append(('<moves xsi:type="behaviour:Stop" name="stop"/>', False))
     moves, fluid = zip(*moved, strict=True)
     at = f"//@robots.{number}/@moves."
@@ -183,7 +190,7 @@ def _robot(number: int, route: Route, targets: list[str]) -> str:
     return "\n".join((opening, *moves, *following, *policies, "</robots>"))
 
 
-def _sortie(route: Route, places: Sequence[str], sortie: str = "") -> Iterator[tuple[str, bool]]:
+def _sortie(route: Route, places: Sequence[str], looks: str, sortie: str = "") -> Iterator[tuple[str, bool]]:
     """Yield the moves of a sortie, and whether each passes on to the next without a stop."""
     craft = route.craft
     if craft.up:
@@ -191,7 +198,7 @@ def _sortie(route: Route, places: Sequence[str], sortie: str = "") -> Iterator[t
     for index, target in enumerate(places):
         stays = route.stays if index == 0 else 0.0
         goes = f'<moves xsi:type="{craft.goes}" name="{sortie}p{index}" target="{target}"'
-        goes += f' speed="{route.speed:g}">{_photos(route.photos)}</moves>'
+        goes += f' speed="{route.speed:g}">{_photos(route.photos)}{looks if index else ""}</moves>'
         yield goes, route.fluid and index < len(places) - 1 and not stays
         if stays:
             name = f"{sortie}stay"
@@ -221,7 +228,7 @@ def _fluid(passes: bool) -> str:
 def _target(targets: list[str], name: str, place: Place) -> str:
     x, y, z = place
     targets.append(
-        f'<targets xsi:type="behaviour:RelativeCoordinate" name="{name}" x="{x:g}" y="{y:g}" z="{z:g}"'
+        f'<targets xsi:type="behaviour:RelativeCoordinate" name="{name}" x="{x:.9g}" y="{y:.9g}" z="{z:g}"'
         ' reference="//@targets.0"/>'
     )
     return f"//@targets.{len(targets) - 1}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import cos, radians, sin
 from typing import Any
 
 from real_flights.flight import (
@@ -64,6 +65,11 @@ def _short(craft: Craft, *policies: tuple[str, str, float], stays: float = 0.0, 
     return Route(name, craft, places, speed, fluid=fluid, stays=stays, policies=policies)
 
 
+ROUND = tuple(
+    (15.0 * sin(angle), 20.0 - 15.0 * cos(angle), 12.0)
+    for angle in (radians(10.0 * corner) for corner in range(37))
+)
+ORBIT = Route("Alba", COPTER, ROUND, 5.0, fluid=True, looks=(0.0, 20.0, 0.0))
 PASSING = Route("Kestrel", PHOTOGRAPHER, SQUARE, 3.0, photos=8.0)
 """On each leg, one at once, three at 8 m each, and a last one; an ArduPilot may leave out the first of the
 next leg, which is at the same place."""
@@ -235,6 +241,8 @@ def _ways(craft: Craft) -> tuple[Flight, ...]:
             Flight("copter: turns", routes(replace(_short(craft), turns=20.0))),
             Flight("copter: two sorties", routes(replace(_short(craft), sorties=2))),
             Flight("copter: photos in passing", routes(PASSING), photos=(17, 20)),
+            Flight("copter: orbit", routes(ORBIT), looks=(0.0, 20.0, 10.0), parameters={"MNT1_TYPE": 0.0}),
+            Flight("copter: orbit, with a gimbal", routes(ORBIT), timed=False, says="flown leg by leg"),
         ]
     return tuple(given)
 
@@ -405,6 +413,7 @@ PX4S = (
         )
     ),
     _as_px4(_COPTERS["photos in passing"], parameters={"TRIG_MODE": 4.0}),
+    _as_px4(_COPTERS["orbit"], parameters={}),
     replace(
         _as_px4(_COPTERS["legs"], parameters={"MPC_XY_VEL_MAX": 3.0}),
         name="PX4: slower by its owner",

@@ -3,9 +3,10 @@ from dataclasses import replace
 import pytest
 from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
 
-from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.pacing import halts_of, paced
 from mmrs_core.planning.strokes import parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
+from mmrs_core.scene import Device, Look
 from mmrs_runtime.timing import LegTiming
 
 SLUGGISH = with_kinematics(robot(), timing=LegTiming(0.5))
@@ -109,3 +110,14 @@ def test_a_leg_a_hop_and_a_leg_in_one_go_may_take_as_long_as_on_a_mission(photo_
     longer = 20.0 - 5.0
     beside = pilot.travel.upload_seconds(1)
     assert led_on - alone == pytest.approx((longer + beside) * flown_as_mission)
+
+
+def test_a_robot_that_looks_at_one_place_stops_only_where_it_begins_and_ends_that():
+    ring = road(*((north, 0.0, 20.0) for north in (0.0, 30.0, 60.0, 90.0)), look=Look((45.0, 50.0, 0.0)))
+    (stroke,), type = ring.strokes, robot().type
+    assert halts_of(stroke, type) == [True, False, False, True]
+    aside = replace(stroke, look=replace(stroke.look, angle_degrees=90.0))
+    assert halts_of(aside, type) == [True] * 4
+    on_the_left = Device("camera", {}, {"mount.yaw": "-90"})
+    mounted = replace(type, devices={"camera": on_the_left})
+    assert halts_of(replace(stroke, look=replace(stroke.look, device="camera")), mounted) == [True] * 4

@@ -180,7 +180,11 @@ class Moves:
                 if move != flight.run.moves[-1]:
                     passed(move)
 
-        self._vehicle.fly(flight.first, flight.last, reached)
+        self._vehicle.fly(flight.first, flight.last, reached, flight.look)
+
+    def can_look(self, flight: UploadedRun) -> bool:
+        """Return whether the vehicle looks where it is to on an uploaded run."""
+        return self._vehicle.can_look(flight.look)
 
     def note(self, move: str) -> None:
         """Record that the position at the end of a run's move was passed."""
@@ -281,7 +285,7 @@ class _Flight:
     def __init__(self, moves: Moves, flight: UploadedRun, passed: Callable[[str], None]) -> None:
         self._moves, self._flight, self._passed = moves, flight, passed
         self._left = list(flight.run.moves)
-        self._stepped = False
+        self._stepped = not moves.can_look(flight)
 
     def __call__(self) -> None:
         if not self._stepped:

@@ -36,7 +36,7 @@ OF_CONTROLLERS: Mapping[str, str] = {
     "Land": "mode LAND",
     "HoldPosition": "stays, timed by the controller",
     "HeadTo.heading": "turns on the spot; a gimbal: DO_SET_ROI_LOCATION",
-    "GoTo.heading": "yaw of the position targets; a gimbal: DO_SET_ROI_LOCATION",
+    "GoTo.heading": "yaw of the position targets; on missions, and of a gimbal: DO_SET_ROI_LOCATION",
     "Heading.angle": "added to the yaw",
     "Heading.deviceId": "its mount.yaw or mavlink.gimbal counts; absent: the front",
     "Heading.target": "found by a function of yours in objects.py",

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions import passages
-from mmrs_core.contributions.passages import STRAIGHT_DEGREES
-from mmrs_core.scene.headings import turn_at
 from mmrs_mavlink.plugin.context import VehicleContext
 
 CORNER_SECONDS = 1.0
@@ -37,7 +34,7 @@ def runs_of(context: VehicleContext, turning_radius: float = 0.0) -> tuple[MoveR
     """
     if context.frame.is_local:
         return ()
-    found = passages.runs_of(context.robot, context.moves)
+    found = passages.runs_of(context.robot, context.type, context.moves)
     if turning_radius > 0.0:
         return tuple(MoveRun(moves, (*(0.0 for _ in moves[1:]), CORNER_SECONDS)) for moves in found)
     return tuple(MoveRun(moves, _holds(context.robot, moves)) for moves in found)
@@ -51,6 +48,6 @@ def _holds(robot: RobotProgram, moves: tuple[int, ...]) -> tuple[float, ...]:
         assert before is not None
         assert here is not None
         assert after is not None
-        if degrees(turn_at(before, here, after)) <= STRAIGHT_DEGREES:
+        if passages.goes_straight(before, here, after):
             holds[index] = 0.0
     return tuple(holds)

@@ -51,6 +51,8 @@ class Missions:
         judged: whether it judges a mission that it has stored, and may not fly it.
         keeps_speed: whether a run begins at the speed that an earlier one has set.
         starts_itself: parameter that is 1 where a run begins elsewhere, or uncommanded, and what happens.
+        gimbal_looks: parameter that is not 0 where a gimbal turns to what the vehicle is to look at; empty:
+            any does that turns sideways.
     """
 
     begins_with_home: bool = True
@@ -61,6 +63,7 @@ class Missions:
     judged: bool = False
     keeps_speed: bool = False
     starts_itself: tuple[str, str] = ("", "")
+    gimbal_looks: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -103,6 +103,7 @@ PX4 = Autopilot(
         zero_counts=True,
         turns=False,
         judged=True,
+        gimbal_looks="MIS_MNT_YAW_CTL",
         keeps_speed=True,
         starts_itself=(
             "COM_TAKEOFF_ACT",

@@ -8,7 +8,7 @@ from math import ceil
 
 from mmrs_runtime.controllers.geodesy import at_height
 
-from ..program import Geographic, GoTo, Object, Place, Robot, Run, TakeOff
+from ..program import Geographic, GoTo, Look, Object, Place, Robot, Run, TakeOff
 from .items import CHANGE_SPEED, FENCE_VERTEX, LOITER, NO_FRAME, RALLY_POINT, WAYPOINT, Item
 
 
@@ -19,12 +19,14 @@ class UploadedRun:
     Attributes:
         first, last: sequence numbers of its items; the item after the last makes the vehicle wait.
         ends: by sequence number, the move that has ended when the item is behind.
+        look: where the vehicle or a gimbal on it looks all along; None: the vehicle looks where it goes.
     """
 
     run: Run
     first: int
     last: int
     ends: dict[int, str]
+    look: Look | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +75,9 @@ def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, UploadedRun]]:
             if item.command == WAYPOINT:
                 ends[len(items)] = move
             items.append(item)
-        flights[run.moves[0]] = UploadedRun(run, first, len(items) - 1, ends)
         last = robot.step(run.moves[-1]).movement
         assert isinstance(last, GoTo)
+        flights[run.moves[0]] = UploadedRun(run, first, len(items) - 1, ends, last.look)
         assert isinstance(last.at, Geographic)
         items.append(_positional(LOITER, last.at))
     return tuple(items), flights

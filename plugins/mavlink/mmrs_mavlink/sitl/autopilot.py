@@ -72,6 +72,7 @@ class SimulatedAutopilot:
         silent: commands that it does not answer. cut: numbers of the links that are cut.
         link_timeout: shortest timeout of its link, seconds, whatever its parameters say.
         failing: time since which each failure is present. answered: failures that it has answered.
+        interest: what it looks at on missions; None: the next place.
         home: latitude, longitude, metres above mean sea level. home_set: whether a command has set it.
         last_heartbeat: time of the last heartbeat of its ground station; None: none received.
         setpoints: times of the last set-points, oldest first. aimed: whether it has followed one in its mode.
@@ -100,6 +101,7 @@ class SimulatedAutopilot:
         self.located, self.shift = True, (0.0, 0.0)
         self.wind = settings.wind
         self.motor_failed = False
+        self.interest: Vector | None = None
         self.obstacle: float | None = None
         self.silent, self.cut = set(settings.silent), set[int]()
         self._clear_memory()
@@ -210,7 +212,7 @@ class SimulatedAutopilot:
         self.mode, self.mode_name = number, name
         if name not in NOT_TO_BE_ARMED_IN:
             self.armable_mode = name
-        self.body.onward = None
+        self.body.onward = self.interest = None
         if name != "land":
             self.body.target = None
         self._set_up_body(name)
@@ -250,7 +252,8 @@ class SimulatedAutopilot:
         return next(known, inf)
 
     def face(self, place: Vector) -> None:
-        """Turn to a place that is not right here."""
+        """Turn to its region of interest, or to a place that is not right here."""
+        place = self.interest or place
         north, east = place[0] - self.body.position[0], place[1] - self.body.position[1]
         if abs(north) + abs(east) > 1.0:
             self.body.wanted_heading = course(self.body.position, place)

@@ -19,8 +19,7 @@ UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
 NOT_NOW = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 FORCE_DISARM = 21_196
 DEVICES = frozenset(
-    {181, 182, 183, 184, 195, 197, 203, 204, 205, 206, 211, 530, 531}
-    | {1000, 1001, 2000, 2001, 2500, 2501, 42600}
+    {181, 182, 183, 184, 203, 204, 205, 206, 211, 530, 531} | {1000, 1001, 2000, 2001, 2500, 2501, 42600}
 )
 """Commands for devices, which are only recorded."""
 
@@ -137,6 +136,16 @@ def _yaw(pilot: SimulatedAutopilot, params: Params) -> int:
     return ACCEPTED
 
 
+def _look_at(pilot: SimulatedAutopilot, params: Params) -> int:
+    pilot.interest = pilot.local(params[4], params[5], 0.0) if pilot.mode_name == "auto" else None
+    return ACCEPTED
+
+
+def _look_ahead(pilot: SimulatedAutopilot, params: Params) -> int:
+    pilot.interest = None
+    return ACCEPTED
+
+
 def _set_current(pilot: SimulatedAutopilot, params: Params) -> int:
     items = pilot.stores[MISSION]
     if not 0 <= params[0] < len(items):
@@ -183,6 +192,8 @@ _HANDLERS: Mapping[int, Callable[[SimulatedAutopilot, Params], int]] = {
     int(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH): _enter("return"),
     int(mavlink.MAV_CMD_DO_CHANGE_SPEED): _speed,
     int(mavlink.MAV_CMD_CONDITION_YAW): _yaw,
+    int(mavlink.MAV_CMD_DO_SET_ROI_LOCATION): _look_at,
+    int(mavlink.MAV_CMD_DO_SET_ROI_NONE): _look_ahead,
     int(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT): _set_current,
     int(mavlink.MAV_CMD_MISSION_START): _start_mission,
     int(mavlink.MAV_CMD_DO_SET_MODE): _set_mode,

@@ -232,6 +232,10 @@ def _execute(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> boo
         pilot.body.change_speed(item.params[1])
     elif item.command == mavlink.MAV_CMD_CONDITION_YAW:
         pilot.body.wanted_heading = item.params[0]
+    elif item.command == mavlink.MAV_CMD_DO_SET_ROI_LOCATION:
+        pilot.interest = pilot.local(item.x * 1e-7, item.y * 1e-7, 0.0)
+    elif item.command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
+        pilot.interest = None
     pilot.record(item.command, (*item.params, item.x, item.y, item.z))
     return True
 

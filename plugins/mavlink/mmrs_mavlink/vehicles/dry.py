@@ -63,7 +63,7 @@ class DryVehicle(Vehicle):
         self.rest(distance(self._here, place) / (speed or CRUISE))
         self._here = place
 
-    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+    def fly(self, first: int, last: int, reached: Callable[[int], None], look: Look | None = None) -> None:
         """Pass the mission's items one after the other."""
         for seq in range(first, last + 1):
             item = self._items[seq]

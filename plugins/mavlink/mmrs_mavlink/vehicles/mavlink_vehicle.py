@@ -110,8 +110,8 @@ class MavlinkVehicle(Vehicle):
             self._tell(line)
         for line in uploads.words:
             self._tell(line)
-        if geographic and (changed := self._mission.upload(uploads)):
-            self._tell(changed)
+        for line in self._mission.upload(uploads) if geographic else ():
+            self._tell(line)
         for line in preparation.report_failsafes(self._link):
             self._tell(line)
         for line in set_up(self._link, self._travel, self._acceptance, uploads.speed):
@@ -217,17 +217,26 @@ class MavlinkVehicle(Vehicle):
         """Turn until a device points at a target; a device with a gimbal turns on its own."""
         self._steering.turn(look)
 
-    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+    def fly(self, first: int, last: int, reached: Callable[[int], None], look: Look | None = None) -> None:
         """Fly items of the uploaded mission; the one after `last` must make the vehicle wait.
+
+        Args:
+            first, last: their numbers.
+            reached: called with the number of each that is behind.
+            look: where the vehicle, or a gimbal on it, looks all along; None: where it goes.
 
         Raises:
             RefusedError: the vehicle has another mission by now, or does not begin with that item.
             FaultError: no item was reached for too long, or the mission was set ahead or back externally.
         """
         self._mode_control.arm()
-        end = self._mission.fly(first, last, reached)
+        end = self._mission.fly(first, last, reached, look)
         self._mode_control.enter(modes.GUIDED)
         self._steering.stay(end)
+
+    def can_look(self, look: Look | None) -> bool:
+        """Return whether it looks at a place all along a mission."""
+        return self._mission.can_look(look)
 
     def rest(self, seconds: float) -> None:
         """Stay for `seconds`."""

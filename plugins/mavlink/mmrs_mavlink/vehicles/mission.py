@@ -9,7 +9,7 @@ would otherwise be noticed in the air.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from math import nan
 
@@ -20,7 +20,7 @@ from mmrs_runtime.faults import NO_PROGRESS, FaultError, RefusedError
 from ..links.link import Link
 from ..profiles import modes
 from ..profiles.autopilot import Autopilot
-from ..program import Geographic, Place
+from ..program import Geographic, Look, Place
 from ..services import parameters
 from ..services.commands import command
 from ..services.exchanges import mark_of
@@ -30,9 +30,14 @@ from . import preparation
 from .corridor import width_for
 from .following import Following
 from .mode_control import ModeControl
+from .pointing import gimbal_looks, look_ahead, look_at_place
 from .steering import PATIENCE_SECONDS
 from .telemetry import Telemetry
 
+GIMBAL_LOOKS = (
+    "a gimbal turns to what the vehicle's front is to look at on missions: those are flown leg by leg, which"
+    " takes longer than planned; mavlink.gimbal says that a device is on it"
+)
 BEFORE_ID = 6
 """Bytes of MISSION_CURRENT before the id of the mission."""
 
@@ -46,12 +51,14 @@ class Mission:
         self._items: Sequence[Item] = ()
         self._id = 0
         self._width: float | None = None
+        self._looks: Look | None = None
+        self._gimbal_looks = False
 
-    def upload(self, uploads: Uploads) -> str:
+    def upload(self, uploads: Uploads) -> Iterator[str]:
         """Replace mission, fence and rally points of a vehicle, and read them back.
 
-        Returns:
-            What was changed so that each run begins with its own first item; empty where nothing was.
+        Yields:
+            What was changed so that each run begins with its own first item, and which runs it cannot fly.
 
         Raises:
             RefusedError: something is not accepted, or read back differently, or runs would begin elsewhere.
@@ -62,10 +69,26 @@ class Mission:
         if items and self._link.profile.autopilot.missions.judged:
             check_feasible(self._link, self._telemetry, begun)
         self._width = width_for(self._link)
-        return keep_place(self._link) if self._items else ""
+        if self._items and (changed := keep_place(self._link)):
+            yield changed
+        fronts = any(each.look is not None and not each.look.gimbal for each in uploads.flights.values())
+        self._gimbal_looks = fronts and gimbal_looks(self._link)
+        if self._gimbal_looks:
+            yield GIMBAL_LOOKS
 
-    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> Place | None:
+    def can_look(self, look: Look | None) -> bool:
+        """Return whether the vehicle looks at a place all along a run; None: where it goes."""
+        return look is None or look.gimbal or not self._gimbal_looks
+
+    def fly(
+        self, first: int, last: int, reached: Callable[[int], None], look: Look | None = None
+    ) -> Place | None:
         """Fly a run of items, and report each one passed; the vehicle then waits at the end of the run.
+
+        Args:
+            first, last: numbers of the items.
+            reached: called with the number of each item that is passed.
+            look: where the vehicle, or a gimbal on it, looks all along; None: where it goes.
 
         Returns:
             Where that is; None where no item defines it.
@@ -83,8 +106,18 @@ class Mission:
             self._mode_control.enter(modes.AUTO)
             if (speed := speed_for(self._link, self._items, first)) is not None:
                 command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
+            self._look(look)
             self._follow(first, last, following, reached)
+        self._look(None)
         return places[max(places)] if places else None
+
+    def _look(self, look: Look | None) -> None:
+        """Look at a place from now on; None: ahead, also where a run that was broken off looked at one."""
+        if look is not None:
+            look_at_place(self._link, self._mode_control.guidance, look)
+        elif self._looks is not None:
+            look_ahead(self._link, self._looks)
+        self._looks = look
 
     def _check(self) -> None:
         """Check that the mission was not replaced, where the vehicle has given it an id.

@@ -10,9 +10,10 @@ from mmrs_runtime.controllers.geodesy import bearing, distance, offset, turn
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link
-from ..program import Geographic, Local, Look, Object, Place
-from ..services.commands import command, command_at
+from ..program import Local, Look, Object, Place
+from ..services.commands import command
 from .mode_control import ModeControl
+from .pointing import look_ahead, look_at_place
 from .shunting import HALTED, Shunting
 from .telemetry import Telemetry
 
@@ -174,10 +175,8 @@ class Steering:
             return
         if isinstance(look.at, Local):
             self._aim_gimbal(look, look.at)
-        elif isinstance(look.at, Geographic):
-            frame, height = self._mode_control.guidance.level(look.at.height)
-            at = Geographic(look.at.latitude, look.at.longitude, height)
-            command_at(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, at, frame, look.device)
+        else:
+            look_at_place(self._link, self._mode_control.guidance, look)
 
     def _aim_gimbal(self, look: Look, at: Local) -> None:
         """Turn a gimbal to a place near home: regions of interest are places on the Earth."""
@@ -198,8 +197,8 @@ class Steering:
         )
 
     def _unpoint(self, look: Look | None) -> None:
-        if look is not None and look.gimbal and isinstance(look.at, Geographic):
-            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_NONE, look.device)
+        if look is not None and look.gimbal:
+            look_ahead(self._link, look)
 
     def _steer(self, place: Place, look: Look | None) -> None:
         here = self._telemetry.here()

@@ -63,8 +63,12 @@ class Vehicle:
     def turn(self, look: Look) -> None:
         """Turn until a device points at something."""
 
-    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
-        """Fly items of the uploaded mission, and tell each item that is behind."""
+    def fly(self, first: int, last: int, reached: Callable[[int], None], look: Look | None = None) -> None:
+        """Fly items of the uploaded mission, and tell each item that is behind; `look`: all along."""
+
+    def can_look(self, look: Look | None) -> bool:
+        """Return whether it looks at a place all along a mission; None: where it goes."""
+        return True
 
     def rest(self, seconds: float) -> None:
         """Stay for `seconds`."""

@@ -5,13 +5,15 @@ from dataclasses import replace
 import pytest
 from flight_crew import manned, robot_of
 from patience import until
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
+from mmrs_mavlink.driving.moves import Moves
+from mmrs_mavlink.program import Geographic, GoTo, Land, Look, Run, Start, Step, Stop, TakeOff, Then
 from mmrs_mavlink.services import parameters
 from mmrs_mavlink.services.missions import upload
 from mmrs_mavlink.services.uploads import mission_of, uploads_of
 from mmrs_mavlink.vehicles.mission import check_feasible, first_flown, items_for, keep_place, speed_before
-from mmrs_runtime.controllers.geodesy import distance
+from mmrs_runtime.controllers.geodesy import bearing, distance, turn
 from mmrs_runtime.faults import RefusedError
 
 WAYS = {
@@ -116,6 +118,60 @@ def test_a_run_without_a_speed_is_not_flown_at_that_of_the_run_before(airborne):
     )
     made.vehicle.fly(second.first, second.last, lambda seq: None)
     assert speeds[-1] == autopilot.parameters["MPC_XY_CRUISE"]
+
+
+MAST = Look(Geographic(42.37 + 60.0 / 111_080.0, 13.351, 0.0))
+LOOKING = replace(
+    ROBOT,
+    steps=tuple(
+        replace(step, movement=replace(step.movement, look=MAST)) if step.move[0] == "b" else step
+        for step in ROBOT.steps
+    ),
+)
+
+
+@pytest.mark.parametrize("firmware", ["ardupilot", "px4"])
+def test_a_vehicle_looks_at_one_place_all_along_a_run_and_ahead_on_the_next(airborne, firmware):
+    made = airborne(firmware=firmware, robot=LOOKING)
+    autopilot, aside = made.simulated.autopilot, []
+
+    def sees(message, out):
+        if made.mode == "auto" and not out:
+            here = made.vehicle.state().place
+            aside.append(abs(turn(autopilot.body.heading, bearing(here, MAST.at))))
+
+    made.link.observe(sees)
+    flight = mission_of(LOOKING)[1]["b1"]
+    made.vehicle.fly(flight.first, flight.last, lambda seq: None, flight.look)
+    assert max(aside[len(aside) // 4 :]) < 10.0
+    first = mission_of(LOOKING)[1]["a1"]
+    assert first.look is None
+    made.vehicle.fly(first.first, first.last, lambda seq: None, first.look)
+    assert aside[-1] > 45.0
+
+
+def test_where_a_gimbal_would_look_instead_of_the_vehicle_runs_are_flown_leg_by_leg(airborne):
+    made = airborne(robot=LOOKING)
+    answer = made.simulated.streams.send_once
+
+    def with_gimbal(number):
+        if number != mavlink.MAVLINK_MSG_ID_GIMBAL_MANAGER_INFORMATION:
+            return answer(number)
+        sideways = mavlink.GIMBAL_MANAGER_CAP_FLAGS_HAS_YAW_AXIS
+        limits = (0.0,) * 6
+        made.simulated.radio.send(mavlink.MAVLink_gimbal_manager_information_message(0, sideways, 1, *limits))
+        return mavlink.MAV_RESULT_ACCEPTED
+
+    assert made.vehicle.can_look(MAST)
+    made.simulated.streams.send_once = with_gimbal
+    assert any("flown leg by leg" in line for line in prepare(made, LOOKING))
+    assert not made.vehicle.can_look(MAST)
+    assert made.vehicle.can_look(replace(MAST, gimbal=True))
+    flight, passed = mission_of(LOOKING)[1]["b1"], []
+    made.vehicle.fly = None
+    Moves(LOOKING, made.vehicle, made.clock, {}, lambda *_: None).run(flight, passed.append).run()
+    assert passed == ["b1", "b2"]
+    assert distance(made.vehicle.state().place, WAYS["b3"]) < 4.0
 
 
 def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_told():

@@ -276,7 +276,7 @@ def test_the_last_leg_of_a_run_takes_until_the_program_notices():
     fluid = {index: replace(robot.transitions[index], fluid=True) for index in (2, 3)}
     robot, given = replace(robot, transitions={**robot.transitions, **fluid}), checked(robot)
     kinematics = replace(kinematics_of(given, robot), noticing=2.5)
-    passages = Passages(robot, given.move_kinds, kinematics, local=False)
+    passages = Passages(robot, None, given.move_kinds, kinematics, local=False)
     first, middle, last = (passages.kinematics(leg).timing.settling for leg in legs)
     assert (middle - first, last - middle) == (0.0, 2.5)
 
@@ -291,7 +291,7 @@ def test_the_first_leg_of_a_run_takes_what_the_vehicle_takes_to_set_out():
 
     def passed(starting):
         kinematics = replace(plain, mission=replace(plain.mission, starting=starting))
-        passages = Passages(robot, given.move_kinds, kinematics, local=False)
+        passages = Passages(robot, None, given.move_kinds, kinematics, local=False)
         return passages.ahead(legs[0], ((0.0, 0.0, 20.0), (0.0, 20.0, 20.0)))
 
     late, at_once = passed(1.2), passed(0.0)
@@ -469,7 +469,7 @@ def passage_of(timing=None, actions=()):
     robot, given = replace(robot, transitions={**robot.transitions, **fluid}), checked(robot)
     kinematics = kinematics_of(given, robot)
     kinematics = kinematics if timing is None else replace(kinematics, timing=timing, mission=timing)
-    passages = Passages(robot, given.move_kinds, kinematics, local=True)
+    passages = Passages(robot, None, given.move_kinds, kinematics, local=True)
     return passages.ahead(robot.moves[3], ((0.0, 20.0, 20.0), (0.0, 40.0, 20.0)))
 
 

@@ -1,7 +1,8 @@
 from dataclasses import replace
+from math import cos, radians, sin
 
 import pytest
-from mmrs_multicopter.testing import go_to, robot_program, target_input
+from mmrs_multicopter.testing import go_to, quad, robot_program, target_input
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.scene import Frame
@@ -12,11 +13,19 @@ from mmrs_mavlink.plugin.runs import runs_of
 EAST = [(float(10 * index), 0.0, 20.0) for index in range(1, 6)]
 
 
-def runs(moves=None, transitions=None, frame: Frame = L_AQUILA, fluid=(1, 2, 3, 4), turning_radius=0.0):
+def runs(
+    moves=None,
+    transitions=None,
+    frame: Frame = L_AQUILA,
+    fluid=(1, 2, 3, 4),
+    turning_radius=0.0,
+    properties=None,
+):
     made = moves or [go_to(f"m{index}", place) for index, place in enumerate(EAST, start=1)]
     flowing = {index: Transition(index, index + 1, fluid=True) for index in fluid}
     robot = robot_program("alpha", made, transitions=flowing | dict(transitions or {}))
-    context = context_of(robot, target_input(program(robot, frame=frame)))
+    given = target_input(program(robot, frame=frame), [quad(**(properties or {}))])
+    context = context_of(robot, given)
     return runs_of(context, turning_radius)
 
 
@@ -77,6 +86,36 @@ def test_a_move_that_a_waypoint_cannot_express_is_in_no_run(changed):
     moves = [go_to(f"m{index}", place) for index, place in enumerate(EAST)]
     moves[1] = replace(moves[1], **changed)
     assert [run.moves for run in runs(moves)] == [(3, 4, 5)]
+
+
+def looking(*headings, **device):
+    """Return the runs of as many moves, of a drone with a camera."""
+    moves = [
+        replace(go_to(f"m{index}", place), heading=heading)
+        for index, (place, heading) in enumerate(zip(EAST, headings, strict=True))
+    ]
+    return [run.moves for run in runs(moves, properties=device)]
+
+
+MAST, POLE = (Heading(MoveTarget((30.0, 50.0, north)), "camera") for north in (0.0, 9.0))
+
+
+def test_on_a_run_the_robot_looks_at_one_place():
+    assert looking(MAST, MAST, MAST, MAST, MAST) == [(1, 2, 3, 4, 5)]
+    assert looking(None, MAST, MAST, MAST, POLE) == [(2, 3, 4)]
+
+
+def test_where_it_looks_aside_of_a_place_a_robot_flies_move_by_move():
+    assert looking(*[replace(MAST, angle_degrees=90.0)] * 5) == []
+    assert looking(*[MAST] * 5, **{"mount.yaw": "90"}) == []
+    assert looking(*[MAST] * 5, **{"mount.yaw": "0"}) == [(1, 2, 3, 4, 5)]
+
+
+def test_a_circle_of_short_legs_is_flown_without_a_stop_also_when_it_was_written_to_a_file():
+    ring = [10.0 * complex(cos(angle), sin(angle)) for angle in (radians(10.0 * k) for k in range(36))]
+    places = [(round(place.real, 4), round(place.imag, 4), 20.0) for place in ring]
+    moves = [replace(go_to(f"m{index}", place), heading=MAST) for index, place in enumerate(places)]
+    assert runs(moves, fluid=range(1, 36))[0].holds == (1.0, *[0.0] * 34, 1.0)
 
 
 def test_a_move_that_is_entered_from_elsewhere_begins_a_run():
