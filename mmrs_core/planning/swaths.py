@@ -77,7 +77,7 @@ def swaths(
         return []
     reach = _Reach(width, length, _near(closed, pieces, width))
     angles = [angle] if angle is not None else sweep_angles(pieces)
-    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach)
+    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach, angle)
     if not lines:
         place = pieces[0].representative_point()
         return [Swath(np.array([[place.x, place.y]]))]
@@ -176,14 +176,21 @@ def _cost(lines: Sequence[Swath], reach: _Reach, start: tuple[float, float] | No
     return along + stops + hop_length(begins, ends, order, start)
 
 
-def _repaired(pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach) -> list[Swath]:
-    """Add lines through what the lines leave out, until next to nothing is left."""
+def _repaired(
+    pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach, angle: float | None
+) -> list[Swath]:
+    """Add lines through what the lines leave out, until next to nothing is left.
+
+    They have the direction that is asked for; what these leave out gets them in any.
+    """
     area = sum(piece.area for piece in pieces)
-    for _ in range(_REPAIRS):
+    for again in range(_REPAIRS):
         rest = parts(uncovered_by(pieces, lines, reach.width, reach.length), smallest=1e-9 * area)
         if sum(piece.area for piece in rest) <= _LEFT_OUT * area:
             return lines
-        lines = lines + [line for piece in rest for line in _sweep([piece], reach, _long_side(piece))]
+        asked = None if again else angle
+        for piece in rest:
+            lines = lines + _sweep([piece], reach, _long_side(piece) if asked is None else asked)
     return lines
 
 

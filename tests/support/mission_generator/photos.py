@@ -61,7 +61,8 @@ def odd_photos(scene, program, solvable):
         places = np.array([at for each in own.values() for at, _, _ in each]).reshape(-1, 3)
         found = []
         if task.part.is_a(GRID_TASK):
-            found = [*_beside(attributes, places), *_astray(attributes, own, solvable)]
+            dented = _target(scene, task, own).boundary.difference(_shell(attributes).boundary.buffer(NEAR))
+            found = [*_beside(attributes, places), *_astray(attributes, own, places, dented, solvable)]
         elif attributes.get("photoDistance"):
             found = _off_line(task.part, places, solvable)
         elif attributes.get("width") and solvable:
@@ -78,27 +79,40 @@ def _seen(attributes):
     return width, attributes["footprintLength"] * (1.0 - attributes["frontOverlap"])
 
 
+def _shell(attributes):
+    return shapely.Polygon([point[:2] for point in attributes["shell"]])
+
+
 def _beside(attributes, places):
     """Yield photos that are made in turnarounds."""
-    shell = shapely.Polygon([point[:2] for point in attributes["shell"]])
+    shell = _shell(attributes)
     away = shapely.distance(shell, shapely.points(places[:, :2])).max(initial=0.0)
     if away > max(_seen(attributes)):
         yield f"are made up to {away:.3f} m beside it"
 
 
-def _astray(attributes, own, solvable):
-    """Yield swaths at another angle than asked for, and a begin at another corner."""
+def _astray(attributes, own, places, dented, solvable):
+    """Yield swaths at another angle than asked for, and a begin at another corner.
+
+    Along areas and holes (`dented`) swaths have dents.
+    """
     turned, corner = attributes.get("swathAngle"), CORNERS.get(attributes["startCorner"])
+    dent = max(_seen(attributes))
     legs = [(at, turn) for each in own.values() for at, *leg in each if (turn := _angle(*leg)) is not None]
     if turned is not None:
         step = 90.0 if attributes["crossHatch"] else 180.0
-        off = [(90.0 - angle - turned + step / 2) % step - step / 2 for _, angle in legs]
+        off = [
+            (90.0 - angle - turned + step / 2) % step - step / 2
+            for at, angle in legs
+            if shapely.distance(dented, shapely.Point(at[:2])) > dent
+        ]
         if off and max(map(abs, off)) > 0.5:
             yield f"are on swaths that are turned by up to {max(map(abs, off)):.2f} degrees"
     if corner and len(own) == 1 and solvable and legs:
         ends = [np.dot(at[:2], corner) for at, angle in legs if abs(angle - legs[0][1]) < 0.5]
-        if ends[0] < max(ends) - NEAR:
-            yield f"begin {max(ends) - ends[0]:.3f} m from the corner {attributes['startCorner']}"
+        begin = np.dot(places[0][:2], corner)
+        if begin < max(ends) - NEAR:
+            yield f"begin {max(ends) - begin:.3f} m from the corner {attributes['startCorner']}"
 
 
 def _off_line(part, places, solvable):
@@ -168,16 +182,17 @@ def _footprints(scene, robot):
 
 def photos_of(robot):
     """Yield the task of each photo, where it is made, and the ends of the leg."""
-    here, every, since = robot.home, 0.0, 0.0
-    for move in robot.moves:
-        end = move.target.position if move.target and move.target.position else here
+    ends, before = {}, {to: source for source, each in robot.transitions.items() for to in each.next_moves}
+    every, since = 0.0, 0.0
+    for index, move in enumerate(robot.moves):
+        here = ends.get(before.get(index), robot.home)
+        end = ends[index] = move.target.position if move.target and move.target.position else here
         ahead = [here for action in move.before if _photographs(action)]
         behind = [end for action in move.after if _photographs(action)]
         every, since = _distance(move.before, every), 0.0 if ahead else since
         passed, since = _passed(every, since, here, end)
         every, since = _distance(move.after, every), 0.0 if behind else since
         yield from ((move.task, at, here, end) for at in (*ahead, *passed, *behind))
-        here = end
 
 
 def _photographs(action):

@@ -10,7 +10,7 @@ from mmrs_core.planning.levels import legs_over
 from mmrs_core.planning.lines import Swath, spots_over
 from mmrs_core.planning.slabs import Band, Cell
 from mmrs_core.planning.strips import swaths_along_x
-from mmrs_core.planning.swaths import swaths
+from mmrs_core.planning.swaths import _Reach, _repaired, swaths
 
 FIELD = shapely.box(0, 0, 60, 12)
 
@@ -165,3 +165,13 @@ def test_a_triangle_whose_flat_side_is_off_by_rounding_has_a_leg():
     legs = legs_over([Cell(-254.5, -248.3, band, band)], 20.0)
     assert legs[0].begin[0] == -254.5
     assert legs[-1].end[0] == -248.3
+
+
+def test_what_swaths_leave_out_is_covered_in_the_direction_that_is_asked_for():
+    piece = shapely.box(0, 0, 60, 20)
+    first = Swath(np.array([[5.0, 0.0], [5.0, 20.0]]))
+    reach = _Reach(10.0, 0.0, shapely.Polygon())
+    asked = _repaired([piece], [first], reach, np.pi / 2.0)
+    assert all(np.ptp(line.points[:, 0]) < 1e-9 for line in asked)
+    assert uncovered_by([piece], asked, 10.0, 0.0).area < 1e-6
+    assert len(_repaired([piece], [first], reach, None)) < len(asked)
