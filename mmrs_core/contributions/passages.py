@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from math import degrees
 from typing import TYPE_CHECKING
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.walk import successors
 from mmrs_core.contributions.rules import MoveKind, most_specific
-from mmrs_core.scene.headings import turn_at
-from mmrs_core.scene.passing import SHORTEST_RUN, passed
+from mmrs_core.scene.passing import SHORTEST_RUN, goes_straight, passed
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram, Transition
@@ -21,11 +19,6 @@ if TYPE_CHECKING:
     from mmrs_core.scene.timing import Push
 
 RECHARGE = (BEHAVIOUR, "Recharge")
-STRAIGHT_DEGREES = 10.0
-"""Up to where a turn is none, so that a vehicle that keeps to its legs passes it without a stop."""
-
-_SAME_DEGREES = 0.1
-"""Short legs turn more, where their places were rounded for a file."""
 
 
 class Passages:
@@ -64,6 +57,7 @@ class Passages:
         self._lasts = frozenset(run[-1] for run in runs)
         self._stops = kinematics.turning_radius <= 0.0
         self._held = frozenset(run[0] for run in runs if self._stops)
+        self._passed = frozenset(index for run in runs if self._stops for index in _passed(robot, run))
         self._first = frozenset(self._setting_out()) if kinematics.setting_out().expected else frozenset()
 
     def kinematics(self, move: Move) -> Kinematics:
@@ -72,6 +66,10 @@ class Passages:
         known = self._mission if index in self._uploaded else self._kinematics
         known = self._ending if index in self._lasts else known
         return replace(known, sets_out=True) if index in self._first else known
+
+    def is_passed(self, move: Move) -> bool:
+        """Return whether a move of a mission begins and ends without a stop for certain."""
+        return self._index[move.id] in self._passed
 
     def _setting_out(self) -> Iterator[int]:
         """Yield the moves before which the robot may have to set out.
@@ -154,11 +152,6 @@ class Passages:
         return passed(rates, (path[-2], path[-1]), (beyond[0], beyond[1]), entered, onward, push)
 
 
-def goes_straight(before: Position, corner: Position, after: Position) -> bool:
-    """Return whether a path turns so little at a corner that a vehicle passes it without a stop."""
-    return degrees(turn_at(before, corner, after)) <= STRAIGHT_DEGREES + _SAME_DEGREES
-
-
 def runs_of(
     robot: RobotProgram, type: RobotType | None, move_kinds: Mapping[Name, MoveKind]
 ) -> tuple[tuple[int, ...], ...]:
@@ -181,6 +174,14 @@ def runs_of(
     entered = set(chained.values())
     chains = (_chain(each, chained) for each in chained if each not in entered)
     return tuple(sorted(each for each in chains if len(each) >= SHORTEST_RUN))
+
+
+def _passed(robot: RobotProgram, run: Sequence[int]) -> Iterator[int]:
+    """Yield the moves of a run that begin and end where the path continues straight, without a stop."""
+    places = [target.position for index in run if (target := robot.moves[index].target)]
+    known = [place for place in places if place is not None]
+    straight = [goes_straight(*each) for each in zip(known, known[1:], known[2:], strict=False)]
+    yield from (run[i + 2] for i, both in enumerate(pairwise(straight)) if all(both))
 
 
 def _chain(first: int, chained: Mapping[int, int]) -> tuple[int, ...]:

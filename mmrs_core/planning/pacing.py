@@ -23,6 +23,7 @@ from mmrs_core.planning.strokes import (
 )
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.scene import ActionAt, Position, RobotType, Stroke
+from mmrs_core.scene.passing import goes_straight
 from mmrs_core.scene.timing import MoveSeconds, acting
 
 BESIDE = 2, 2
@@ -156,13 +157,15 @@ class _Line:
         due = _due(stroke, self._arcs)
         uploaded = pilot.travel.uploaded(commanded_speed(stroke, pilot.kinematics)) if bound > 0 else None
         self._uploaded = uploaded
+        halts = self._halts(stroke, pilot) if uploaded is not None else []
         if isinstance(beside, InMissions):
-            self._in_runs, self.beside = beside.legs, beside.ends * pilot.travel.ending
+            legs, self.beside = beside.legs, beside.ends * pilot.travel.ending
         else:
-            halts = self._halts(stroke, pilot) if uploaded is not None else []
             runs = list(runs_between(halts, beside)) if halts else []
-            self._in_runs = frozenset(leg for run, _ in runs for leg in run)
+            legs = frozenset(leg for run, _ in runs for leg in run)
             self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
+        stops = pilot.kinematics.turning_radius <= 0.0
+        self._in_runs = legs.difference(self._passed(halts)) if legs and stops else legs
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
         for i, (one, two) in enumerate(pairwise(self._stops)):
             between = bool(due[i] and due[i + 1])
@@ -185,6 +188,13 @@ class _Line:
                 start, corner, end = self._stops[i - 1 : i + 2]
                 halts[i] = not corners.may_pass(start, corner, end, speed)
         return halts
+
+    def _passed(self, halts: Sequence[bool]) -> Iterator[int]:
+        """Yield the legs that begin and end without a stop: they take no longer than between two stops."""
+        places = zip(self._stops, self._stops[1:], self._stops[2:], strict=False)
+        straight = [False, *(goes_straight(*each) for each in places), False]
+        passed = [not halt and goes for halt, goes in zip(halts, straight, strict=True)]
+        yield from (i for i in range(2, len(passed) - 1) if passed[i] and passed[i + 1] and not halts[i - 1])
 
     def _leg(self, index: int, one: Position, two: Position) -> float:
         if self._eased:

@@ -7,9 +7,10 @@ slow down for the corner and turn within that radius.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import asin, dist, inf, radians, tan
+from math import asin, degrees, dist, inf, radians, tan
 from typing import NamedTuple, TypeAlias
 
+from mmrs_core.scene.headings import turn_at
 from mmrs_core.scene.primitives import Position
 from mmrs_core.scene.timing import Leg, Push, Rates, moved
 from mmrs_runtime.s_curves import Curve, covering, curve, turning
@@ -20,6 +21,12 @@ STRAIGHT = 0.005
 
 NEARLY_BACK = radians(89.0)
 """Half of a turn up to which a robot comes nearer to its next place by that."""
+
+STRAIGHT_DEGREES = 10.0
+"""Up to where a turn is none, so that a vehicle that keeps to its legs passes it without a stop."""
+
+_SAME_DEGREES = 0.1
+"""Short legs turn more, where their places were rounded for a file."""
 
 SHORTEST_RUN = 3
 """Fewest legs without a stop that are uploaded as a mission: fewer are commanded one by one."""
@@ -42,6 +49,11 @@ class Passage(NamedTuple):
     onward: float
     speed: float = 0.0
     start: Position | None = None
+
+
+def goes_straight(before: Position, corner: Position, after: Position) -> bool:
+    """Return whether a path turns so little at a corner that a vehicle passes it without a stop."""
+    return degrees(turn_at(before, corner, after)) <= STRAIGHT_DEGREES + _SAME_DEGREES
 
 
 def passed(

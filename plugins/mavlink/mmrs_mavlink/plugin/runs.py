@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions import passages
+from mmrs_core.scene.passing import goes_straight
 from mmrs_mavlink.plugin.context import VehicleContext
 
 CORNER_SECONDS = 1.0
@@ -48,6 +49,6 @@ def _holds(robot: RobotProgram, moves: tuple[int, ...]) -> tuple[float, ...]:
         assert before is not None
         assert here is not None
         assert after is not None
-        if passages.goes_straight(before, here, after):
+        if goes_straight(before, here, after):
             holds[index] = 0.0
     return tuple(holds)

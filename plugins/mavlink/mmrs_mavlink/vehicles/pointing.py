@@ -1,7 +1,7 @@
 """Regions of interest: places on the Earth at which a vehicle, or a gimbal on it, looks while it goes.
 
 On missions an ArduCopter turns its front there unless it has a gimbal that turns sideways, a PX4 unless
-MIS_MNT_YAW_CTL says so (``AutoYaw::set_roi``, ``MissionBase::on_active``). An ArduCopter forgets the place
+MIS_MNT_YAW_CTL says so (``AutoYaw::set_roi``, ``MissionBase::on_active``). An ArduCopter forgets the region
 when it enters AUTO, a PX4 when a mission is uploaded.
 """
 
@@ -20,7 +20,7 @@ from .guidance import Guidance
 
 
 def look_at_place(link: Link, guidance: Guidance, look: Look) -> None:
-    """Make a vehicle or a gimbal look at a place; what is no place on the Earth is no such region."""
+    """Make a vehicle or a gimbal look at a place; other targets are ignored."""
     if isinstance(look.at, Geographic):
         frame, height = guidance.level(look.at.height)
         at = Geographic(look.at.latitude, look.at.longitude, height)
