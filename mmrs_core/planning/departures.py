@@ -32,8 +32,7 @@ def waiting_at_home(
         found: its plan; None: it was refused.
         plan: finds another scene's.
     """
-    waits = scene.dependencies or any(task.earliest for task in scene.tasks)
-    if not waits or len(scene.tasks) * len(scene.robots) > _FEW_PAIRS:
+    if not may_wait(scene):
         return
     if found is not None and (later := _later(scene, found)):
         yield later
@@ -43,6 +42,12 @@ def waiting_at_home(
         with suppress(InfeasibleError):
             if later := _later(scene, plan(without_charges(scene))):
                 yield later
+
+
+def may_wait(scene: Scene) -> bool:
+    """Return whether robots may have to wait, in a mission that is small enough to seek other departures."""
+    few = len(scene.tasks) * len(scene.robots) <= _FEW_PAIRS
+    return few and bool(scene.dependencies or any(task.earliest for task in scene.tasks))
 
 
 def without_charges(scene: Scene) -> Scene:

@@ -43,7 +43,8 @@ class Effort:
     def stop(self) -> bool:
         """End the search; return whether it has something that can be kept."""
         self.stopped = self.best < inf
-        return self.stopped or (self._trial is not None and self._trial.stop())
+        keeps = self._trial is not None and self._trial.stop()
+        return self.stopped or keeps
 
     def trial(self) -> Effort:
         """Return the effort of a search before this one, whose result may be rejected.
@@ -52,6 +53,15 @@ class Effort:
         """
         seconds = 0.75 * (self._end - self._clock()) if self.timed else None
         self._trial = Effort(seconds, self._clock, self._show)
+        return self._trial
+
+    def again(self) -> Effort:
+        """Return the effort of a search after one that has found something, which shows nothing.
+
+        It has the time that is left.
+        """
+        self._trial = Effort(self._end - self._clock() if self.timed else None, self._clock)
+        self._trial.best, self._trial.stopped = self.best, self.stopped
         return self._trial
 
     @property

@@ -136,6 +136,7 @@ def explain(scene: Scene, plan: Plan, timed: Plan | None = None) -> PlanExplanat
 class _Explaining:
     def __init__(self, scene: Scene, plan: Plan, timed: Plan) -> None:
         self._whole_scene, self._whole = scene, plan
+        scene = replace(scene, timed=scene.timed or plan.timed)
         scene, plan = without_relays(begun_no_earlier(scene, plan.earliest), plan)
         self._scene, self._plan, self._timed, self._jobs = scene, plan, timed, jobs_of(scene)
         self._groups = _groups(plan)

@@ -7,14 +7,14 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
-from math import floor
+from math import floor, inf
 from typing import Protocol
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble, idle_apart
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.deconfliction import alternatives, best_signalled, better, kept_apart, unasked_returns
-from mmrs_core.planning.departures import begun_no_earlier, waiting_at_home
+from mmrs_core.planning.departures import begun_no_earlier, may_wait, waiting_at_home
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, with_remedies
@@ -74,24 +74,42 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         return plan_with_relays(scene, lambda part, its: plan(part, seed=seed, effort=its), effort)
     effort = effort or Effort()
     found, refusal = None, InfeasibleError("no plan")
+    first = effort.trial() if effort.timed and may_wait(scene) else effort
     try:
-        found = _planned(scene, seed, effort)
+        found = _planned(scene, seed, first)
+        effort.best = min(effort.best, found.makespan)
     except InfeasibleError as error:
         refusal = error
+    effort.stopped = effort.stopped or first.stopped
 
     def planned_again(part: Scene) -> Plan:
-        if effort.stopped:
+        if (again := effort.again()).stopped:
             raise InfeasibleError("no plan: the search was stopped")
-        return _planned(part, seed, Effort())
+        made = _planned(part, seed, again)
+        bound = least_makespan(Team(scene), jobs_of(scene)) if found is None else found.lower_bound
+        return replace(made, lower_bound=bound, timed=part.timed and not scene.timed)
 
-    for earliest in waiting_at_home(scene, found, planned_again):
+    if _may_need_fewer_charges(scene, found):
         with suppress(InfeasibleError):
-            made = planned_again(begun_no_earlier(scene, earliest))
-            bound = least_makespan(Team(scene), jobs_of(scene)) if found is None else found.lower_bound
-            found = better(replace(made, lower_bound=bound, earliest=earliest), found)
+            made = planned_again(replace(scene, timed=True))
+            found = made if found is None or made.makespan < _SOONER * found.makespan else found
+    asked = scene if found is None or not found.timed else replace(scene, timed=True)
+    for earliest in waiting_at_home(asked, found, planned_again):
+        with suppress(InfeasibleError):
+            made = planned_again(begun_no_earlier(asked, earliest))
+            found = better(replace(made, earliest=earliest), found)
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return found
+
+
+def _may_need_fewer_charges(scene: Scene, found: Plan | None) -> bool:
+    """Return whether a charge may suffice for more if robots stop at corners: a mission may take longer."""
+    if scene.timed or scene.frame.is_local or len(scene.tasks) * len(scene.robots) > _FEW_PAIRS:
+        return False
+    able = [each.kinematics for each in scene.robots if each.kinematics is not None]
+    lasts = any(each.mission is not None and min(each.endurance, each.energy) < inf for each in able)
+    return lasts and (found is None or any(each.sorties > 1 for each in found.robots))
 
 
 def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
@@ -192,6 +210,9 @@ class _UnexplainedError(InfeasibleError):
 class _ShortError(_UnexplainedError):
     """No robot is left to do some job, perhaps only because of constraints put on the team."""
 
+
+_SOONER = 0.98
+"""Times the mission time up to which it is worth a stop at every corner."""
 
 _FAIR = 1.2
 """Times the mission time without separation up to which no other team is planned to keep apart for less."""

@@ -176,6 +176,7 @@ class Plan:
         planned: makespan by the planner's times, where `makespan` is another; 0: it is the same.
         earliest: by task: seconds before which it does not begin in the plan, so that robots wait at home.
         unseparated: makespan of the best plan found in which robots need not keep apart; 0: there is none.
+        timed: whether its robots stop at every corner, as in `Scene`.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -188,3 +189,4 @@ class Plan:
     planned: float = 0.0
     unseparated: float = 0.0
     earliest: Mapping[str, float] = field(default_factory=dict)
+    timed: bool = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -95,7 +95,8 @@ def transform(
 
 class _Assembly:
     def __init__(self, scene: Scene, plan: Plan, chains: Mapping[str, Chain], registry: Registry) -> None:
-        self._scene, self._chains, self._registry = scene, chains, registry
+        timed = scene.timed or plan.timed
+        self._scene, self._chains, self._registry = replace(scene, timed=timed), chains, registry
         self._idle = {each.robot for each in plan.robots if not each.steps}
         self._coordinates = Coordinates(scene.frame, _positions(scene, chains))
         self._objects: dict[tuple[str, Position, float | None], bl.ObjectTarget] = {}

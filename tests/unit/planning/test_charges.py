@@ -1,6 +1,7 @@
 """What robots do on one charge, and where their way ends."""
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
@@ -149,3 +150,21 @@ def test_a_robot_that_need_not_return_keeps_enough_to_recharge_between_tasks():
     works = {name: replace(w, strokes=(replace(w.strokes[0], hold=10.0),)) for name, w in works.items()}
     far = {"z": visit((-450.0, 0.0, 20.0))}
     assert sound(scene([lone], {**works, **far})).robots[0].sorties >= 2
+
+
+@pytest.mark.parametrize(("endurance", "stops"), [(300.0, True), (600.0, False)])
+def test_robots_stop_at_corners_where_more_fits_into_a_charge_then(endurance, stops):
+    slow = LegTiming(0.3)
+    lone = with_kinematics(robot(), timing=LegTiming(2.0), mission=slow, endurance=endurance, recharge=300.0)
+    zigzag = road(*((100.0 * k, 60.0 * (k % 2), 20.0) for k in range(8)), cuts=(350.0,))
+    whole = scene([lone], {"a": zigzag})
+    found = sound(whole)
+    assert found.timed is stops
+    assert found.robots[0].sorties == 1
+    assert found.lower_bound == pytest.approx(plan(replace(whole, robots=(tireless(lone),))).lower_bound)
+
+
+def tireless(each):
+    return with_kinematics(
+        each, timing=each.kinematics.timing, mission=each.kinematics.mission, endurance=inf, energy=inf
+    )

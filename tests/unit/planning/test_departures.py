@@ -1,10 +1,13 @@
 """A robot that would have to wait in the air sets out later."""
 
+from itertools import count
+
 import pytest
 from plain_scenes import robot, scene, task, visit, with_kinematics
 from sound_plans import sound
 
 from mmrs_core.planning.departures import waiting_at_home
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Await, Launch, Recharge
 
@@ -50,3 +53,21 @@ def test_a_sortie_whose_second_task_waits_for_another_robot_begins_later():
 def test_nothing_is_put_off_in_a_plan_without_waits():
     whole = scene([robot()], WORKS, after=[("a", "b")])
     assert list(waiting_at_home(whole, plan(whole), plan)) == []
+
+
+@pytest.mark.parametrize("seconds", [1.0, 300.0])
+def test_later_departures_are_sought_in_the_time_that_is_left(seconds):
+    tasks = {"a": task("a"), "b": task("b", earliest=400.0)}
+    whole = scene([with_kinematics(robot(), endurance=150.0, recharge=300.0)], WORKS, tasks=tasks)
+    ticks = count()
+    found = plan(whole, effort=Effort(seconds, lambda: float(next(ticks))))
+    assert next(ticks) < seconds + 60.0
+    assert waits_in_the_air(found, "r1") < 1.0
+
+
+def test_a_search_that_is_stopped_seeks_no_later_departures():
+    tasks = {"a": task("a"), "b": task("b", earliest=400.0)}
+    whole = scene([with_kinematics(robot(), endurance=150.0, recharge=300.0)], WORKS, tasks=tasks)
+    effort = Effort(3600.0, show=lambda best, least: effort.stop())
+    assert plan(whole, effort=effort).earliest == {}
+    assert effort.stopped

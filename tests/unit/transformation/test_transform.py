@@ -67,14 +67,16 @@ def robot(name="one", home=HOME, **features):
     return replace(made, **features)
 
 
-def behaviour_of(*plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLAIN_ROBOT,), registry=None):
+def behaviour_of(
+    *plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLAIN_ROBOT,), registry=None, timed=False
+):
     robots = robots or tuple(robot(plan.robot) for plan in plans)
     frame = frame or Frame("EPSG:4326", None, None)
     tasks = (Task("t", Part((), {}), longest=7.0),)
     scene = Scene("test", frame, tasks, (), tuple(robots), areas=tuple(areas))
     model, trace = transform(
         scene,
-        Plan(tuple(plans), 0.0, {}, {}),
+        Plan(tuple(plans), 0.0, {}, {}, timed=timed),
         rules={rule.metaclass: rule for rule in rules},
         robot_kinds={(kind.name, ""): kind for kind in kinds},
         registry=registry or core_registry(),
@@ -310,8 +312,9 @@ def test_a_way_without_work_is_fluid_away_from_areas_and_stops_near_them():
     near = Area("pit", AreaUse.FORBIDDEN, ((10.6, -1.0), (12.0, -1.0), (12.0, 1.0), (10.6, 1.0)))
     free, _ = behaviour_of(plan_of(corner))
     tight, _ = behaviour_of(plan_of(corner), areas=[near])
-    flows = [next_of(each.robots[0], each.robots[0].moves[1]).fluid for each in (free, tight)]
-    assert flows == [True, False]
+    stopping, _ = behaviour_of(plan_of(corner), timed=True)
+    flows = [next_of(each.robots[0], each.robots[0].moves[1]).fluid for each in (free, tight, stopping)]
+    assert flows == [True, False, False]
 
 
 def test_altitudes_keep_the_reference_in_which_the_origin_has_one():
