@@ -26,7 +26,11 @@ class Passages:
 
     An autopilot that takes missions in a way of its own is given the robot's runs as missions; it stops at
     the end of a run's first move, and where the path turns. One that needs room to turn passes every end of
-    a run but the last, and an autopilot of which nothing is known every end that it may.
+    a run but the last, and an autopilot of which nothing is known every end that it may. A run on which the
+    robot looks at one place is a mission only where it is quicker so.
+
+    Attributes:
+        runs: that are missions, as indices of moves.
     """
 
     def __init__(
@@ -50,15 +54,47 @@ class Passages:
         self._robot, self._move_kinds, self._kinematics = robot, move_kinds, kinematics
         self._mission, self._careful = kinematics.in_mission(), kinematics.mission is not None
         self._index = {move.id: index for index, move in enumerate(robot.moves)}
-        runs = runs_of(robot, type, move_kinds) if self._careful and not local else ()
-        self._uploaded = frozenset(index for run in runs for index in run)
         late = replace(self._mission.timing, settling=self._mission.timing.settling + kinematics.noticing)
         self._ending = replace(self._mission, timing=late)
-        self._lasts = frozenset(run[-1] for run in runs)
         self._stops = kinematics.turning_radius <= 0.0
+        self._fly(())
+        found = runs_of(robot, type, move_kinds) if self._careful and not local else ()
+        self._fly(tuple(run for run in found if robot.moves[run[0]].heading is None or self._is_quicker(run)))
+
+    def _fly(self, runs: tuple[tuple[int, ...], ...]) -> None:
+        """Take runs as missions."""
+        self.runs = runs
+        self._uploaded = frozenset(index for run in runs for index in run)
+        self._lasts = frozenset(run[-1] for run in runs)
         self._held = frozenset(run[0] for run in runs if self._stops)
-        self._passed = frozenset(index for run in runs if self._stops for index in _passed(robot, run))
-        self._first = frozenset(self._setting_out()) if kinematics.setting_out().expected else frozenset()
+        self._passed = frozenset(index for run in runs if self._stops for index in _passed(self._robot, run))
+        expected = self._kinematics.setting_out().expected
+        self._first = frozenset(self._setting_out()) if expected else frozenset()
+
+    def _is_quicker(self, run: tuple[int, ...]) -> bool:
+        """Return whether a run takes less time as a mission than leg by leg."""
+        stepped = self._seconds(run)
+        self._fly((run,))
+        return self._seconds(run) < stepped
+
+    def _seconds(self, run: Sequence[int]) -> float:
+        """Return how long a run is expected to take."""
+        here = self._place_before(run[0])
+        passage: Passage | None = None
+        seconds = 0.0
+        for move in (self._robot.moves[index] for index in run):
+            name = most_specific(move.metaclasses, self._move_kinds)
+            target = move.target.position if move.target is not None else None
+            if here is not None and name is not None and target is not None:
+                path = (here, target)
+                known = self._move_kinds[name].seconds(
+                    move, path, self.kinematics(move), self._robot.travel_mode
+                )
+                seconds += known.expected - (passage.onward if passage is not None else 0.0)
+                passage = self.ahead(move, path, passage)
+                seconds -= passage.saved if passage is not None else 0.0
+            here = target
+        return seconds
 
     def kinematics(self, move: Move) -> Kinematics:
         """Return what the robot can do in a move."""
@@ -70,6 +106,18 @@ class Passages:
     def is_passed(self, move: Move) -> bool:
         """Return whether a move of a mission begins and ends without a stop for certain."""
         return self._index[move.id] in self._passed
+
+    def _place_before(self, index: int) -> Position | None:
+        """Return where a robot is when it begins a move: where the nearest move before that led."""
+        before = {to: source for source, each in self._robot.transitions.items() for to in each.next_moves}
+        passed = {index}
+        while (source := before.get(index)) is not None and source not in passed:
+            target = self._robot.moves[source].target
+            if target is not None and target.position is not None:
+                return target.position
+            passed.add(source)
+            index = source
+        return self._robot.home
 
     def _setting_out(self) -> Iterator[int]:
         """Yield the moves before which the robot may have to set out.

@@ -168,7 +168,7 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             )
         how = travel_of(context, input)
         yield "travel", Call("Travel", (robot.travel_mode,), tuple(how.items()))
-        yield "runs", tuple(_run(run, robot) for run in runs_of(context, how.get("turning_radius", 0.0)))
+        yield "runs", tuple(_run(run, robot) for run in runs_of(context, kinematics_of(robot, input)))
         yield ("fence", tuple(tuple(_ground(each, context) for each in fence.ring) for fence in kept.fences))
         shared = (kept.rally_points.shared,) if kept.rally_points.shared else ()
         yield "tight", (*(str(fence) for fence in kept.fences if fence.is_tight), *shared)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions import passages
+from mmrs_core.contributions.passages import Passages
+from mmrs_core.scene import Kinematics
 from mmrs_core.scene.passing import goes_straight
 from mmrs_mavlink.plugin.context import VehicleContext
 
@@ -23,7 +25,7 @@ class MoveRun:
     holds: tuple[float, ...]
 
 
-def runs_of(context: VehicleContext, turning_radius: float = 0.0) -> tuple[MoveRun, ...]:
+def runs_of(context: VehicleContext, kinematics: Kinematics | None) -> tuple[MoveRun, ...]:
     """Return the robot's runs, in the order of their first moves; none for a local behaviour.
 
     A vehicle that needs room to turn holds at the end of a run alone: where it stood in a corner, it could
@@ -31,12 +33,16 @@ def runs_of(context: VehicleContext, turning_radius: float = 0.0) -> tuple[MoveR
 
     Args:
         context: of the robot.
-        turning_radius: of its narrowest curve, metres.
+        kinematics: of the robot; None: not known.
     """
     if context.frame.is_local:
         return ()
-    found = passages.runs_of(context.robot, context.type, context.moves)
-    if turning_radius > 0.0:
+    robot, type, moves = context.robot, context.type, context.moves
+    if kinematics is None or kinematics.mission is None:
+        found = passages.runs_of(robot, type, moves)
+    else:
+        found = Passages(robot, type, moves, kinematics, local=False).runs
+    if kinematics is not None and kinematics.turning_radius > 0.0:
         return tuple(MoveRun(moves, (*(0.0 for _ in moves[1:]), CORNER_SECONDS)) for moves in found)
     return tuple(MoveRun(moves, _holds(context.robot, moves)) for moves in found)
 

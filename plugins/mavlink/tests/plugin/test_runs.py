@@ -5,11 +5,13 @@ import pytest
 from mmrs_multicopter.testing import go_to, quad, robot_program, target_input
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
-from mmrs_core.scene import Frame
+from mmrs_core.scene import Frame, Kinematics
 from mmrs_core.testing.programs import L_AQUILA, photo, program
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.runs import runs_of
+from mmrs_mavlink.profiles.pacing import COPTER
 
+TURNING = Kinematics(1.5, 0.0, 2.0, 0.0, 0.0, turning_radius=1.2)
 EAST = [(float(10 * index), 0.0, 20.0) for index in range(1, 6)]
 
 
@@ -18,7 +20,7 @@ def runs(
     transitions=None,
     frame: Frame = L_AQUILA,
     fluid=(1, 2, 3, 4),
-    turning_radius=0.0,
+    kinematics=None,
     properties=None,
 ):
     made = moves or [go_to(f"m{index}", place) for index, place in enumerate(EAST, start=1)]
@@ -26,7 +28,7 @@ def runs(
     robot = robot_program("alpha", made, transitions=flowing | dict(transitions or {}))
     given = target_input(program(robot, frame=frame), [quad(**(properties or {}))])
     context = context_of(robot, given)
-    return runs_of(context, turning_radius)
+    return runs_of(context, kinematics)
 
 
 def test_fluid_moves_make_one_run():
@@ -52,7 +54,7 @@ def test_a_vehicle_that_needs_room_to_turn_holds_at_the_end_alone():
     moves = [
         go_to(f"m{i}", p) for i, p in enumerate([EAST[0], EAST[1], (20.0, 30.0, 20.0), (20.0, 60.0, 20.0)])
     ]
-    assert runs(moves, fluid=(1, 2, 3), turning_radius=1.2)[0].holds == (0.0, 0.0, 0.0, 1.0)
+    assert runs(moves, fluid=(1, 2, 3), kinematics=TURNING)[0].holds == (0.0, 0.0, 0.0, 1.0)
 
 
 def test_a_wait_ends_a_run():
@@ -116,6 +118,17 @@ def test_a_circle_of_short_legs_is_flown_without_a_stop_also_when_it_was_written
     places = [(round(place.real, 4), round(place.imag, 4), 20.0) for place in ring]
     moves = [replace(go_to(f"m{index}", place), heading=MAST) for index, place in enumerate(places)]
     assert runs(moves, fluid=range(1, 36))[0].holds == (1.0, *[0.0] * 34, 1.0)
+
+
+@pytest.mark.parametrize(("corners", "uploaded"), [(4, False), (36, True)])
+def test_a_robot_that_looks_at_one_place_flies_a_mission_only_where_it_is_quicker_so(corners, uploaded):
+    ring = [20.0 * complex(cos(angle), sin(angle)) for angle in (radians(10.0 * k) for k in range(corners))]
+    moves = [
+        replace(go_to(f"m{index}", (place.real, place.imag, 20.0)), heading=MAST)
+        for index, place in enumerate(ring)
+    ]
+    copter = Kinematics(5.0, 0.0, 8.0, 2.5, 1.5, timing=COPTER.step, mission=COPTER.mission)
+    assert bool(runs(moves, fluid=range(1, corners), kinematics=copter)) is uploaded
 
 
 def test_a_move_that_is_entered_from_elsewhere_begins_a_run():
