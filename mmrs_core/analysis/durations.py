@@ -94,9 +94,10 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         push, facing = begun.get(index, (None, None))
         known = replace(passages.kinematics(move), push=push, facing=facing, entering=passed.get(index, 0.0))
         moving = _least(move) if index in gaps else _moving(input, robot, flows, legs[index], known)
-        if index not in gaps and passages.is_passed(move):  # it takes no longer than between two stops
+        if index not in gaps and (saved := passages.saved(move)) is not None:
             stepped = _moving(input, robot, move, legs[index], kinematics)
-            moving = replace(moving, high=min(moving.high, stepped.high))
+            quicker = moving.high - (1.0 + known.timing.spread) * saved
+            moving = replace(moving, high=min(moving.high, max(quicker, stepped.high)))
         found[index] = _with_actions(move, moving, robot_type, kinematics.timing)
         if index not in gaps and found[index].whole.high == inf:
             gaps[index] = UnknownMove(index, _why_unbounded(move, robot_type))

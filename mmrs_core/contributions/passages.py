@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -60,6 +61,7 @@ class Passages:
         self._fly(())
         found = runs_of(robot, type, move_kinds) if self._careful and not local else ()
         self._fly(tuple(run for run in found if robot.moves[run[0]].heading is None or self._is_quicker(run)))
+        self._saved = dict(self._saved_for_certain()) if self._stops and self._mission.timing.passes else {}
 
     def _fly(self, runs: tuple[tuple[int, ...], ...]) -> None:
         """Take runs as missions."""
@@ -67,7 +69,6 @@ class Passages:
         self._uploaded = frozenset(index for run in runs for index in run)
         self._lasts = frozenset(run[-1] for run in runs)
         self._held = frozenset(run[0] for run in runs if self._stops)
-        self._passed = frozenset(index for run in runs if self._stops for index in _passed(self._robot, run))
         expected = self._kinematics.setting_out().expected
         self._first = frozenset(self._setting_out()) if expected else frozenset()
 
@@ -78,23 +79,28 @@ class Passages:
         return self._seconds(run) < stepped
 
     def _seconds(self, run: Sequence[int]) -> float:
-        """Return how long a run is expected to take."""
+        return sum(seconds - saved for _, seconds, saved in self._timed(run))
+
+    def _saved_for_certain(self) -> Iterator[tuple[int, float]]:
+        for run in self.runs:
+            if inner := frozenset(_passed(self._robot, run)):
+                yield from ((index, saved) for index, _, saved in self._timed(run) if index in inner)
+
+    def _timed(self, run: Sequence[int]) -> Iterator[tuple[int, float, float]]:
+        """Yield the moves of a run with their seconds between two stops, and those that passing saves."""
         here = self._place_before(run[0])
         passage: Passage | None = None
-        seconds = 0.0
-        for move in (self._robot.moves[index] for index in run):
+        for index in run:
+            move = self._robot.moves[index]
             name = most_specific(move.metaclasses, self._move_kinds)
             target = move.target.position if move.target is not None else None
             if here is not None and name is not None and target is not None:
-                path = (here, target)
-                known = self._move_kinds[name].seconds(
-                    move, path, self.kinematics(move), self._robot.travel_mode
-                )
-                seconds += known.expected - (passage.onward if passage is not None else 0.0)
+                path, known = (here, target), self.kinematics(move)
+                seconds = self._move_kinds[name].seconds(move, path, known, self._robot.travel_mode).expected
+                saved = passage.onward if passage is not None else 0.0
                 passage = self.ahead(move, path, passage)
-                seconds -= passage.saved if passage is not None else 0.0
+                yield index, seconds, saved + (passage.saved if passage is not None else 0.0)
             here = target
-        return seconds
 
     def kinematics(self, move: Move) -> Kinematics:
         """Return what the robot can do in a move."""
@@ -103,15 +109,21 @@ class Passages:
         known = self._ending if index in self._lasts else known
         return replace(known, sets_out=True) if index in self._first else known
 
-    def is_passed(self, move: Move) -> bool:
-        """Return whether a move of a mission begins and ends without a stop for certain."""
-        return self._index[move.id] in self._passed
+    def saved(self, move: Move) -> float | None:
+        """Return the seconds that a move takes less since it begins and ends without a stop for certain.
+
+        It is part of a mission then. None: it is not certain.
+        """
+        return self._saved.get(self._index[move.id])
+
+    @cached_property
+    def _before(self) -> Mapping[int, int]:
+        return {to: source for source, each in self._robot.transitions.items() for to in each.next_moves}
 
     def _place_before(self, index: int) -> Position | None:
         """Return where a robot is when it begins a move: where the nearest move before that led."""
-        before = {to: source for source, each in self._robot.transitions.items() for to in each.next_moves}
         passed = {index}
-        while (source := before.get(index)) is not None and source not in passed:
+        while (source := self._before.get(index)) is not None and source not in passed:
             target = self._robot.moves[source].target
             if target is not None and target.position is not None:
                 return target.position

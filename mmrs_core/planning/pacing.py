@@ -23,8 +23,8 @@ from mmrs_core.planning.strokes import (
 )
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.scene import ActionAt, Position, RobotType, Stroke
-from mmrs_core.scene.passing import goes_straight
-from mmrs_core.scene.timing import MoveSeconds, acting
+from mmrs_core.scene.passing import Passage, goes_straight, passed
+from mmrs_core.scene.timing import MoveSeconds, Rates, acting
 
 BESIDE = 2, 2
 """Legs before and after a stroke that may continue it without a stop where nothing is known of them: a
@@ -164,8 +164,9 @@ class _Line:
             runs = list(runs_between(halts, beside)) if halts else []
             legs = frozenset(leg for run, _ in runs for leg in run)
             self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
-        stops = pilot.kinematics.turning_radius <= 0.0
-        self._in_runs = legs.difference(self._passed(halts)) if legs and stops else legs
+        self._in_runs = legs
+        passes = uploaded is not None and uploaded.timing.passes and pilot.kinematics.turning_radius <= 0.0
+        self._saved = dict(self._saved_on(halts, uploaded)) if legs and passes and uploaded else {}
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
         for i, (one, two) in enumerate(pairwise(self._stops)):
             between = bool(due[i] and due[i + 1])
@@ -189,12 +190,16 @@ class _Line:
                 halts[i] = not corners.may_pass(start, corner, end, speed)
         return halts
 
-    def _passed(self, halts: Sequence[bool]) -> Iterator[int]:
-        """Yield the legs that begin and end without a stop: they take no longer than between two stops."""
-        places = zip(self._stops, self._stops[1:], self._stops[2:], strict=False)
-        straight = [False, *(goes_straight(*each) for each in places), False]
-        passed = [not halt and goes for halt, goes in zip(halts, straight, strict=True)]
-        yield from (i for i in range(2, len(passed) - 1) if passed[i] and passed[i + 1] and not halts[i - 1])
+    def _saved_on(self, halts: Sequence[bool], uploaded: Rates) -> Iterator[tuple[int, float]]:
+        """Yield the legs of missions that begin and end without a stop, and the seconds that this saves."""
+        legs = list(pairwise(self._stops))
+        before: Passage | None = None
+        for i, (leg, after) in enumerate(pairwise(legs)):
+            on = not halts[i] and not halts[i + 1] and goes_straight(*leg, after[1])
+            ahead = passed(uploaded, leg, after, before) if on else None
+            if before is not None and ahead is not None:
+                yield i, before.onward + ahead.saved
+            before = ahead
 
     def _leg(self, index: int, one: Position, two: Position) -> float:
         if self._eased:
@@ -202,7 +207,7 @@ class _Line:
         seconds = self._rates.from_stop_to_stop(one, two)
         if self._uploaded is None or index not in self._in_runs:
             return seconds
-        return max(seconds, self._uploaded.from_stop_to_stop(one, two))
+        return max(seconds, self._uploaded.from_stop_to_stop(one, two) - self._saved.get(index, 0.0))
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
         each = (action_seconds(self._robot.type, action) for action in actions)

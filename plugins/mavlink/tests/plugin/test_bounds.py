@@ -1,7 +1,7 @@
 """What vehicles take lies within the bounds of the check: legs of simulated ones, and what was measured."""
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import cos, dist, radians, sin
 from statistics import mean
 
@@ -9,7 +9,7 @@ import pytest
 from counts import many
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input
 
 from mmrs_core.analysis.durations import durations_of
 from mmrs_core.analysis.figures import kinematics_of
@@ -18,6 +18,7 @@ from mmrs_core.behaviour.program import DEVICE_ACTION, NOTIFY, Action
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
 from mmrs_core.contributions.timing import as_uploaded
+from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.scene import Capability, Kinematics
 from mmrs_core.scene.passing import Passage, passed
 from mmrs_core.scene.timing import STANDING, Rates
@@ -267,6 +268,26 @@ def bounds(*moves, **movement):
     given = checked(robot, **movement)
     found = durations_of(given, robot, motions(given)["alpha"]).of
     return {robot.moves[index].id: each for index, each in found.items()}
+
+
+@given(st.lists(st.sampled_from([1.0, 3.0, 9.0, 15.0, 30.0, 100.0]), min_size=3, max_size=9))
+@settings(max_examples=many(20))
+def test_bounds_of_legs_that_are_passed_are_no_less_than_what_passing_takes(lengths):
+    norths = accumulate(lengths)
+    legs = [replace(go_to(f"m{index}", (0.0, north, 20.0)), flows=True) for index, north in enumerate(norths)]
+    robot = robot_program("alpha", [take_off("up", 20.0), *legs, LAND])
+    inner = range(2, len(legs) + 1)
+    fluid = {index: replace(robot.transitions[index], fluid=True) for index in inner}
+    robot = replace(robot, transitions={**robot.transitions, **fluid})
+    given = checked(robot, acceleration=5.0)
+    most = durations_of(given, robot, motions(given)["alpha"]).of
+    planned = {
+        each.index: each.seconds
+        for each in planned_moves(robot, target_input(program(robot), given.types.values()))
+    }
+    spread = 1.0 + ARDUCOPTER.pacing.mission.spread
+    for index in range(2, len(legs) + 2):
+        assert most[index].moved.high >= spread * planned[index].expected - 1e-9
 
 
 def test_the_last_leg_of_a_run_takes_until_the_program_notices():
