@@ -40,7 +40,7 @@ def waiting_at_home(
         found is None or any(each.sorties > 1 for each in found.robots)
     ):
         with suppress(InfeasibleError):
-            if later := _later(scene, plan(without_charges(scene))):
+            if later := _later(scene, plan(near(without_charges(scene)))):
                 yield later
 
 
@@ -59,6 +59,11 @@ def without_charges(scene: Scene) -> Scene:
         for each in scene.robots
     )
     return replace(scene, robots=tuple(robots))
+
+
+def near(scene: Scene) -> Scene:
+    """Return the scene whose robots may come near to each other; they stop at corners as before."""
+    return replace(scene, minimum_separation=None)
 
 
 def begun_no_earlier(scene: Scene, earliest: Mapping[str, float | None]) -> Scene:

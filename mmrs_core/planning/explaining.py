@@ -17,7 +17,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.corridors import gone_through
 from mmrs_core.planning.critical_path import Link, critical_path
-from mmrs_core.planning.departures import begun_no_earlier, without_charges
+from mmrs_core.planning.departures import begun_no_earlier, near, without_charges
 from mmrs_core.planning.jobs import Job, is_control, jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.planner import plan
@@ -323,7 +323,7 @@ class _Explaining:
             asked = {task.name: task.earliest for task in self._whole_scene.tasks}
             held = {task.name for task in scene.tasks if task.earliest is not None} & set(self._plan.earliest)
             with suppress(InfeasibleError):
-                other = plan(begun_no_earlier(_near(scene), {name: asked[name] for name in held}))
+                other = plan(begun_no_earlier(near(scene), {name: asked[name] for name in held}))
                 sooner = max(sooner, (self._whole.unseparated or max(self._ends)) - other.makespan)
         return max(0.0, sooner)
 
@@ -376,11 +376,6 @@ class _Explaining:
             if task.deadline is not None and task.name in self._timed.ends
         ]
         return f"'{min(spare)[1]}' ends {min(spare)[0]:.0f} s before its deadline" if spare else ""
-
-
-def _near(scene: Scene) -> Scene:
-    """Return the scene in which robots may come as near to each other as they like."""
-    return scene if scene.minimum_separation is None else replace(scene, minimum_separation=0.0)
 
 
 def _waits_in(chain: Sequence[Link]) -> str:

@@ -14,7 +14,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble, idle_apart
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.deconfliction import alternatives, best_signalled, better, kept_apart, unasked_returns
-from mmrs_core.planning.departures import begun_no_earlier, may_wait, waiting_at_home
+from mmrs_core.planning.departures import begun_no_earlier, may_wait, near, waiting_at_home
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, with_remedies
@@ -96,8 +96,9 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     asked = scene if found is None or not found.timed else replace(scene, timed=True)
     for earliest in waiting_at_home(asked, found, planned_again):
         with suppress(InfeasibleError):
-            made = planned_again(begun_no_earlier(asked, earliest))
-            found = better(replace(made, earliest=earliest), found)
+            later = begun_no_earlier(asked, earliest)
+            if found is None or better(planned_again(near(later)), found) is not found:
+                found = better(replace(planned_again(later), earliest=earliest), found)
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
     return found
