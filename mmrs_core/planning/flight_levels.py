@@ -12,19 +12,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from mmrs_core.planning.delaying import retimed
+from mmrs_core.planning.delaying import delayed, retimed
 from mmrs_core.planning.proximity import joined, pieces_of
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import Traffic, distance_to_keep, levels_above, recharges
 from mmrs_core.planning.sweep import Flags, Floats, Indices
 from mmrs_core.planning.team import Team
-from mmrs_core.planning.timeline import Ride
+from mmrs_core.planning.timeline import Ride, Timelines
 from mmrs_core.planning.travel import Travel
-from mmrs_core.scene import Launch, Plan, Position, Recover, Scene, Step, Transit
+from mmrs_core.scene import Await, Launch, Plan, Position, Recover, Scene, Serve, Step, Transit
 
 _Way: TypeAlias = tuple[Step, ...]
 
@@ -53,6 +53,9 @@ _CONFLICTS_PER_SECOND = 0.2
 _AT_MOST = 1.2
 """Times the seconds expected of going higher that count against a charge."""
 
+_EARLY = 1e-6
+"""Seconds by which a step may begin before its task may: rounding."""
+
 _MOST_PAIRS = 1_000_000
 """Pairs of ways that are too near, up to which a choice is sought."""
 
@@ -78,15 +81,19 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
         if not choice.pairs or choice.pairs > _MOST_PAIRS:
             break
         share, changed = choice.improve(np.random.default_rng(turn), share, most / plan.makespan)
-        made = _made(team.scene, plan, legs)
+        made = _made(team.scene, plan, legs, timing)
         overdrawn = planned.overdrawn_in(made)
         if overdrawn:
             grounded |= overdrawn
             for leg in (leg for name in overdrawn for leg in legs[name]):
                 leg.chosen, leg.ways = 0, leg.ways[:1]
-            made = _made(team.scene, plan, legs)
+            made = _made(team.scene, plan, legs, timing)
         spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
-        if planned.overdrawn_in(made) or broken_times(team, spans):
+        if (
+            planned.overdrawn_in(made)
+            or broken_times(team, spans)
+            or any(_too_soon(team.scene, made, timing))
+        ):
             break
         traffic = planned.with_plan(made)
         better = min(best, traffic, key=lambda each: (len(each.conflicts), each.cost))
@@ -97,11 +104,39 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
     return best
 
 
-def _made(scene: Scene, plan: Plan, legs: Mapping[str, Sequence[_Leg]]) -> Plan:
-    """Return the plan with the ways that are chosen."""
-    return retimed(
+def _made(scene: Scene, plan: Plan, legs: Mapping[str, Sequence[_Leg]], timing: Timelines) -> Plan:
+    """Return the plan with the ways that are chosen; after quicker ones, robots wait longer."""
+    made = retimed(
         scene, plan, {name: tuple(step for leg in mine for step in leg.way) for name, mine in legs.items()}
     )
+    for _ in range(sum(len(each.steps) for each in plan.robots)):
+        soon = next(_too_soon(scene, made, timing), None)
+        if soon is None or not isinstance(soon.before, Await) or soon.before.until is None:
+            break
+        made = delayed(scene, made, soon.robot, {soon.step: soon.seconds})
+    return made
+
+
+class _TooSoon(NamedTuple):
+    """A step, by its number, that may begin some seconds before its task may; `before`: the one before."""
+
+    robot: str
+    step: int
+    before: Step | None
+    seconds: float
+
+
+def _too_soon(scene: Scene, plan: Plan, timing: Timelines) -> Iterator[_TooSoon]:
+    """Yield the first of each robot's steps that may begin before its task may."""
+    earliest = {task.name: task.earliest for task in scene.tasks if task.earliest}
+    timelines = timing.of(plan) if earliest else {}
+    for each in plan.robots if earliest else ():
+        for index, step in enumerate(each.steps):
+            begin = earliest.get(step.task) if isinstance(step, Serve) else None
+            short = 0.0 if begin is None else begin - timelines[each.robot].moments[index][0]
+            if short > _EARLY:
+                yield _TooSoon(each.robot, index, each.steps[index - 1] if index else None, short)
+                break
 
 
 @dataclass(slots=True, eq=False)

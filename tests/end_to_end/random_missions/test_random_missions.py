@@ -47,7 +47,7 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
 
 @pytest.mark.parametrize(
     "seed",
-    [101050, 101709, 103012, 104827, 202280, 295361, 300112, 300229, 310445],
+    [101050, 101709, 103012, 104827, 202280, 295361, 300112, 300229, 310445, 340099, 320921],
     ids=[
         "quicker than it cruises through a corridor",
         "a relay waits for a robot in a corridor",
@@ -58,6 +58,8 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
         "times, a crew and priorities",
         "a choice",
         "a cross hatch by robots of two types",
+        "a level on which a robot comes to a task before its time",
+        "photos on arms of a choice",
     ],
 )
 def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):
