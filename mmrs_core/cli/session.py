@@ -108,6 +108,8 @@ class CommandStages(Stages):
     ) -> None:
         super().__init__(lambda: self._valid[0], session.contributions, seed=seed)
         self._time_limit = time_limit
+        self._end: float | None = None
+        self._effort: Effort | None = None
         self.session = session
         self._mission = mission
         self._context = context
@@ -116,7 +118,7 @@ class CommandStages(Stages):
     def stage(self, name: str, make: Callable[[], Result]) -> Result:
         """Return what a stage makes, after telling the observers of it."""
         result = self.session.stage(name, _DOING[name], make)
-        if name == "plan" and self._effort.stopped:
+        if name == "plan" and self._effort is not None and self._effort.stopped:
             tell("interrupted: the best plan by then is kept")
         return result
 
@@ -127,7 +129,11 @@ class CommandStages(Stages):
             bound = f", lower bound {clock(least)}" if least else ""
             self.session.show(f"mission time {clock(best)}{bound}; Ctrl-C keeps the best plan")
 
-        self._effort = Effort(self._time_limit, monotonic, show)
+        before = self._effort
+        if self._time_limit is not None and self._end is None:
+            self._end = monotonic() + self._time_limit
+        self._effort = Effort(None if self._end is None else self._end - monotonic(), monotonic, show)
+        self._effort.stopped = before is not None and before.stopped
         with ended_by_interrupt(self._effort.stop):
             return plan(scene, seed=seed, effort=self._effort)
 

@@ -55,12 +55,14 @@ class Effort:
         self._trial = Effort(seconds, self._clock, self._show)
         return self._trial
 
-    def again(self) -> Effort:
-        """Return the effort of a search after one that has found something, which shows nothing.
+    def again(self, share: float = 1.0) -> Effort:
+        """Return the effort of a search after another one, which shows nothing.
 
-        It has the time that is left.
+        Args:
+            share: of the time left that it may take.
         """
-        self._trial = Effort(self._end - self._clock() if self.timed else None, self._clock)
+        seconds = share * (self._end - self._clock()) if self.timed else None
+        self._trial = Effort(seconds, self._clock)
         self._trial.best, self._trial.stopped = self.best, self.stopped
         return self._trial
 

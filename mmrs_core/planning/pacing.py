@@ -170,7 +170,8 @@ class _Line:
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
         for i, (one, two) in enumerate(pairwise(self._stops)):
             between = bool(due[i] and due[i + 1])
-            seconds = self._rates.from_stop_to_stop(one, two) if between else self._leg(i, one, two)
+            saved = self._saved.get(i, 0.0)
+            seconds = self._rates.from_stop_to_stop(one, two) if between else self._leg(i, one, two, saved)
             self._arrivals.append(self._departures[-1] + seconds)
             self._departures.append(self._arrivals[-1] + self._acting(due[i + 1]))
         at_the_end = (
@@ -201,13 +202,13 @@ class _Line:
                 yield i, before.onward + ahead.saved
             before = ahead
 
-    def _leg(self, index: int, one: Position, two: Position) -> float:
+    def _leg(self, index: int, one: Position, two: Position, saved: float = 0.0) -> float:
         if self._eased:
             return self._rates.eased(one, two, 0.0 if index else self._transit)
         seconds = self._rates.from_stop_to_stop(one, two)
         if self._uploaded is None or index not in self._in_runs:
             return seconds
-        return max(seconds, self._uploaded.from_stop_to_stop(one, two) - self._saved.get(index, 0.0))
+        return max(seconds, self._uploaded.from_stop_to_stop(one, two) - saved)
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
         each = (action_seconds(self._robot.type, action) for action in actions)
@@ -216,7 +217,8 @@ class _Line:
     def pause(self, arc: float, one: Stroke, two: Stroke) -> tuple[float, float]:
         """Return when the robot has come to the end of a part, and when the next one must begin.
 
-        Where a repetition is cut, that of the one ends and that of the other begins, which takes time.
+        Where a repetition is cut, that of the one ends and that of the other begins, which takes time. The
+        first leg from there begins and ends with a stop.
         """
         stop, length, place = bisect_left(self._arcs, arc - NEAR), length_of(one.points), one.points[-1]
         before, after = stop - 1, stop + (self._arcs[stop] <= arc + NEAR)
@@ -224,6 +226,7 @@ class _Line:
         beginning = self._acting(each for each in two.commands if each.at <= NEAR)
         end = self._departures[before] + self._leg(before, self._stops[before], place)
         begin = self._arrivals[after] - self._leg(after - 1, place, self._stops[after])
+        begin -= self._saved.get(after, 0.0)
         if self._eased and after == before + 1:  # parts of a leg take longer than the whole, at least
             end = min(end, begin)
         return end + ending, begin - beginning

@@ -74,7 +74,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         return plan_with_relays(scene, lambda part, its: plan(part, seed=seed, effort=its), effort)
     effort = effort or Effort()
     found, refusal = None, InfeasibleError("no plan")
-    first = effort.trial() if effort.timed and may_wait(scene) else effort
+    shared = effort.timed and (may_wait(scene) or _charges_last(scene))
+    first = effort.trial() if shared else effort
     try:
         found = _planned(scene, seed, first)
         effort.best = min(effort.best, found.makespan)
@@ -82,35 +83,43 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
         refusal = error
     effort.stopped = effort.stopped or first.stopped
 
-    def planned_again(part: Scene) -> Plan:
-        if (again := effort.again()).stopped:
-            raise InfeasibleError("no plan: the search was stopped")
-        made = _planned(part, seed, again)
+    def planned_again(part: Scene, share: float = _QUICK, seed: int = seed) -> Plan:
+        if effort.over:
+            raise InfeasibleError("no plan: the search has ended")
+        made = _planned(part, seed, effort.again(share))
         bound = least_makespan(Team(scene), jobs_of(scene)) if found is None else found.lower_bound
         return replace(made, lower_bound=bound, timed=part.timed and not scene.timed)
 
     if _may_need_fewer_charges(scene, found):
         with suppress(InfeasibleError):
-            made = planned_again(replace(scene, timed=True))
+            made = planned_again(replace(scene, timed=True), _HALF)
             found = made if found is None or made.makespan < _SOONER * found.makespan else found
     asked = scene if found is None or not found.timed else replace(scene, timed=True)
     for earliest in waiting_at_home(asked, found, planned_again):
         with suppress(InfeasibleError):
             later = begun_no_earlier(asked, earliest)
             if found is None or better(planned_again(near(later)), found) is not found:
-                found = better(replace(planned_again(later), earliest=earliest), found)
+                found = better(replace(planned_again(later, _HALF), earliest=earliest), found)
     if found is None:
         raise refusal.in_full() if isinstance(refusal, _UnexplainedError) else refusal
+    if shared:
+        with suppress(InfeasibleError):
+            made = planned_again(begun_no_earlier(asked, found.earliest), 1.0, seed + 1)
+            found = better(replace(made, earliest=found.earliest), found)
     return found
 
 
 def _may_need_fewer_charges(scene: Scene, found: Plan | None) -> bool:
     """Return whether a charge may suffice for more if robots stop at corners: a mission may take longer."""
+    return _charges_last(scene) and (found is None or any(each.sorties > 1 for each in found.robots))
+
+
+def _charges_last(scene: Scene) -> bool:
+    """Return whether charges are limited and missions uploaded, for few enough tasks to plan them twice."""
     if scene.timed or scene.frame.is_local or len(scene.tasks) * len(scene.robots) > _FEW_PAIRS:
         return False
     able = [each.kinematics for each in scene.robots if each.kinematics is not None]
-    lasts = any(each.mission is not None and min(each.endurance, each.energy) < inf for each in able)
-    return lasts and (found is None or any(each.sorties > 1 for each in found.robots))
+    return any(each.mission is not None and min(each.endurance, each.energy) < inf for each in able)
 
 
 def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
@@ -122,7 +131,9 @@ def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
         _refuse([*short, *min((too_long(each, able) for each in teams_to_try(team)), key=len)], "no plan")
     unlimited: Plan | None = None
     if (free := _without_limits(scene)) != scene:
-        unlimited = _planned(free, seed, effort.trial())
+        trial = effort.trial()
+        unlimited = _planned(free, seed, trial)
+        effort.stopped = effort.stopped or trial.stopped
         if not broken_times(team, _spans(unlimited)):
             return unlimited
     teams = _Remembered(teams_to_try(team))
@@ -211,6 +222,9 @@ class _UnexplainedError(InfeasibleError):
 class _ShortError(_UnexplainedError):
     """No robot is left to do some job, perhaps only because of constraints put on the team."""
 
+
+_QUICK, _HALF = 0.2, 0.5
+"""Shares of the time that is left for a further search."""
 
 _SOONER = 0.98
 """Times the mission time up to which it is worth a stop at every corner."""

@@ -1,15 +1,19 @@
 from dataclasses import replace
+from itertools import combinations_with_replacement
+from math import cos, radians, sin
 
 import pytest
 from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
 
 from mmrs_core.planning.pacing import halts_of, paced
-from mmrs_core.planning.strokes import parts_of, serve_seconds, turned
+from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Device, Look
 from mmrs_runtime.timing import LegTiming
 
 SLUGGISH = with_kinematics(robot(), timing=LegTiming(0.5))
+STEP = LegTiming(2.5, deceleration=1.5, jerk=5.0, spread=0.18)
+MISSION = LegTiming(2.5, jerk=0.9, corner_radius=2.0, settling=1.55, spread=0.18)
 CUTS = (25.0, 50.0, 75.0)
 
 
@@ -121,3 +125,16 @@ def test_a_robot_that_looks_at_one_place_stops_only_where_it_begins_and_ends_tha
     on_the_left = Device("camera", {}, {"mount.yaw": "-90"})
     mounted = replace(type, devices={"camera": on_the_left})
     assert halts_of(replace(stroke, look=replace(stroke.look, device="camera")), mounted) == [True] * 4
+
+
+@pytest.mark.parametrize("cut", [60.0, 67.0, 100.0])
+def test_parts_of_a_curve_take_no_longer_than_their_spans_when_they_are_flown_alone(cut):
+    """What is flown in one go passes the corner at the cut; what begins or ends there does not."""
+    ring = [(60.0 * sin(angle), 60.0 * cos(angle), 20.0) for angle in (radians(10.0 * k) for k in range(19))]
+    cuts = tuple(cut * k for k in range(1, 4) if cut * k < 180.0)
+    (stroke,) = road(*ring, cuts=cuts, look=Look((0.0, 0.0, 0.0))).strokes
+    pieces, pilot = parts_of(stroke), pilot_of(with_kinematics(robot(), timing=STEP, mission=MISSION))
+    spans = paced(pieces, pilot, 1)
+    for first, last in combinations_with_replacement(range(len(pieces)), 2):
+        alone = paced([*joined(pieces[first : last + 1])], pilot, 1)
+        assert spans[last][1] - spans[first][0] >= alone[-1][1] - alone[0][0] - 1e-9
