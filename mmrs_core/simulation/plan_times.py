@@ -45,17 +45,10 @@ def as_simulated(plan: Plan, run: SimulatedRun, trace: Trace, robots: Collection
         makespan=makespan,
         begins={**plan.begins, **{task: min(step.begin for step in own) for task, own in served.items()}},
         ends={**plan.ends, **{task: max(step.end for step in own) for task, own in served.items()}},
-        lower_bound=_bound(plan.lower_bound, makespan, alike),
+        lower_bound=min(plan.lower_bound, makespan) if alike else plan.lower_bound,
         planned=0.0 if alike else plan.makespan,
         notes=(*dict.fromkeys(_choices(run.records, robots)), *plan.notes),
     )
-
-
-def _bound(least: float, makespan: float, alike: bool) -> float:
-    """Return the bound of a simulated makespan; 0: the planner's times say nothing of a smaller one."""
-    if least <= makespan:
-        return least
-    return makespan if alike else 0.0
 
 
 def _choices(records: Iterable[StepRecord], robots: Collection[RobotProgram]) -> Iterator[str]:

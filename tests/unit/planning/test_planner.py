@@ -538,3 +538,17 @@ def test_a_robot_that_may_end_where_it_works_is_chosen_for_that():
     found = sound(scene((robot("returns"), stays), {"a": visit((600.0, 0.0, 20.0))}))
     assert found.robots[0].idle
     assert found.robots[1].steps[-1].at[:2] == (600.0, 0.0)
+
+
+def test_one_stop_ends_a_search_with_deadlines():
+    """A plan without them is sought first, which misses one here."""
+    works = {f"t{k}": visit((70.0 * (k * 7 % 12), 55.0 * (k * 5 % 12), 20.0)) for k in range(12)}
+    late = max(plan(scene(TWO, works)).ends.items(), key=lambda each: each[1])
+    tasks = {late[0]: task(late[0], deadline=late[1] - 30.0)}
+    ticks, stops = iter(range(10**6)), list[bool]()
+    effort = Effort(
+        3600.0, lambda: float(next(ticks)), lambda best, least: None if stops else stops.append(effort.stop())
+    )
+    plan(scene(TWO, works, tasks=tasks), effort=effort)
+    assert effort.stopped
+    assert next(ticks) < 1000
