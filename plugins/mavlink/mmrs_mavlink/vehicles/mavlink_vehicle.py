@@ -211,6 +211,7 @@ class MavlinkVehicle(Vehicle):
         Raises:
             FaultError: it does not get there.
         """
+        self._mission.look()
         self._steering.go_to(place, speed, look, through)
 
     def turn(self, look: Look) -> None:

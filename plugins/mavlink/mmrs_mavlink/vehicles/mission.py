@@ -106,12 +106,12 @@ class Mission:
             self._mode_control.enter(modes.AUTO)
             if (speed := speed_for(self._link, self._items, first)) is not None:
                 command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
-            self._look(look)
+            self.look(look)
             self._follow(first, last, following, reached)
-        self._look(None)
+        self.look()
         return places[max(places)] if places else None
 
-    def _look(self, look: Look | None) -> None:
+    def look(self, look: Look | None = None) -> None:
         """Look at a place from now on; None: ahead, also where a run that was broken off looked at one."""
         if look is not None:
             look_at_place(self._link, self._mode_control.guidance, look)

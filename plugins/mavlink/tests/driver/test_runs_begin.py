@@ -14,7 +14,7 @@ from mmrs_mavlink.services.missions import upload
 from mmrs_mavlink.services.uploads import mission_of, uploads_of
 from mmrs_mavlink.vehicles.mission import check_feasible, first_flown, items_for, keep_place, speed_before
 from mmrs_runtime.controllers.geodesy import bearing, distance, turn
-from mmrs_runtime.faults import RefusedError
+from mmrs_runtime.faults import FaultError, RefusedError
 
 WAYS = {
     name: Geographic(42.37 + north / 111_080.0, 13.35, 10.0)
@@ -120,6 +120,7 @@ def test_a_run_without_a_speed_is_not_flown_at_that_of_the_run_before(airborne):
     assert speeds[-1] == autopilot.parameters["MPC_XY_CRUISE"]
 
 
+ROI, ROI_NONE = 195, 197
 MAST = Look(Geographic(42.37 + 60.0 / 111_080.0, 13.351, 0.0))
 LOOKING = replace(
     ROBOT,
@@ -148,6 +149,23 @@ def test_a_vehicle_looks_at_one_place_all_along_a_run_and_ahead_on_the_next(airb
     assert first.look is None
     made.vehicle.fly(first.first, first.last, lambda seq: None, first.look)
     assert aside[-1] > 45.0
+
+
+def test_after_a_run_that_is_broken_off_the_vehicle_looks_ahead(airborne):
+    made = airborne(robot=LOOKING)
+    flight = mission_of(LOOKING)[1]["b1"]
+
+    def break_off(seq):
+        raise FaultError("ORDERED", "to hold")
+
+    with pytest.raises(FaultError):
+        made.vehicle.fly(flight.first, flight.last, break_off, flight.look)
+    commands = made.simulated.autopilot.history
+    assert [number for _, number, _ in commands if number in (ROI, ROI_NONE)] == [ROI]
+    made.vehicle.hold()
+    made.vehicle.carry_on()
+    made.vehicle.go_to(WAYS["b3"], 3.0, None, False)
+    assert [number for _, number, _ in commands if number in (ROI, ROI_NONE)] == [ROI, ROI_NONE]
 
 
 def test_where_a_gimbal_would_look_instead_of_the_vehicle_runs_are_flown_leg_by_leg(airborne):
