@@ -8,8 +8,8 @@ from mmrs_runtime.controllers.geodesy import distance, ends_of, offset
 
 from ..program import GoTo, Notify, Object, Place, Step, Then
 
-STRAIGHT_DEGREES = 10.0
-"""Up to where a turn is none: as in runs that are uploaded."""
+STRAIGHT_DEGREES = 10.1
+"""Up to where a turn is none, with the rounding of places: as in runs that are uploaded."""
 
 
 def goes_through(step: Step, following: Step | None, here: Place) -> bool:

@@ -35,8 +35,8 @@ from .steering import PATIENCE_SECONDS
 from .telemetry import Telemetry
 
 GIMBAL_LOOKS = (
-    "a gimbal turns to what the vehicle's front is to look at on missions: those are flown leg by leg, which"
-    " takes longer than planned; mavlink.gimbal says that a device is on it"
+    "a gimbal may turn to what the vehicle's front is to look at on missions: those are flown leg by leg,"
+    " which takes longer than planned; mavlink.gimbal says that a device is on it"
 )
 BEFORE_ID = 6
 """Bytes of MISSION_CURRENT before the id of the mission."""

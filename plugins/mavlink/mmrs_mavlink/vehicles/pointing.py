@@ -34,7 +34,10 @@ def look_ahead(link: Link, look: Look) -> None:
 
 
 def gimbal_looks(link: Link) -> bool:
-    """Return whether a gimbal turns to regions of interest on missions, and the vehicle does not."""
+    """Return whether a gimbal may turn to regions of interest on missions, and the vehicle not.
+
+    A vehicle that does not answer may have one.
+    """
     if name := link.profile.autopilot.missions.gimbal_looks:
         return bool(round(parameters.read(link, [name]).get(name, 0.0)))
     with link.inbox("GIMBAL_MANAGER_INFORMATION", component=ANYBODY) as inbox:
@@ -42,6 +45,8 @@ def gimbal_looks(link: Link) -> bool:
             information = mavlink.MAVLINK_MSG_ID_GIMBAL_MANAGER_INFORMATION
             command(link, mavlink.MAV_CMD_REQUEST_MESSAGE, information, tries=2)
             link.wait(lambda: bool(inbox), link.patience)
-        except (RefusedError, UnansweredError):
+        except UnansweredError:
+            return True
+        except RefusedError:
             return False
         return any(each.cap_flags & mavlink.GIMBAL_MANAGER_CAP_FLAGS_HAS_YAW_AXIS for each in tuple(inbox))

@@ -19,7 +19,9 @@ def next_to(north: float, east: float, up: float = 10.0, **more) -> Step:
     return Step("b", GoTo(Local(north, east, up), 5.0, **more))
 
 
-@pytest.mark.parametrize(("east", "through"), [(0.0, True), (17.0, True), (18.0, False), (-100.0, False)])
+@pytest.mark.parametrize(
+    ("east", "through"), [(0.0, True), (17.0, True), (17.72, True), (18.0, False), (-100.0, False)]
+)
 def test_up_to_ten_degrees_the_way_goes_straight_on(east, through):
     assert goes_through(step(), next_to(200.0, east), HERE) is through
 

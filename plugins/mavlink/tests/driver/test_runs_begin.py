@@ -151,6 +151,14 @@ def test_a_vehicle_looks_at_one_place_all_along_a_run_and_ahead_on_the_next(airb
     assert aside[-1] > 45.0
 
 
+def test_a_vehicle_that_does_not_say_whether_it_has_a_gimbal_flies_leg_by_leg(airborne):
+    made = airborne(robot=LOOKING)
+    made.simulated.autopilot.silent.add(int(mavlink.MAV_CMD_REQUEST_MESSAGE))
+    told = prepare(made, LOOKING)
+    assert any("gimbal may turn" in line for line in told)
+    assert not made.vehicle.can_look(MAST)
+
+
 def test_after_a_run_that_is_broken_off_the_vehicle_looks_ahead(airborne):
     made = airborne(robot=LOOKING)
     flight = mission_of(LOOKING)[1]["b1"]
