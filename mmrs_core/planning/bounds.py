@@ -24,6 +24,7 @@ from mmrs_core.planning.few_places import longest_to_few
 from mmrs_core.planning.forests import least_longest, shared, spanning_tree
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.stroke_missions import missions_of
 from mmrs_core.planning.strokes import commanded_speed, continues, joined, serve_seconds
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Coverage, Stroke, Work, distinct_works
@@ -202,11 +203,17 @@ def _work(team: Team, task: str) -> float:
     names, work = _works(team, task), _shared(team, task)
     if work is not None:
         strokes, pilots = joined(work.strokes), [team.pilots[name] for name in names]
-        return min(sum(serve_seconds(each, p.robot, p.kinematics) for each in strokes) for p in pilots)
+        return min(sum(_least_seconds(each, pilot) for each in strokes) for pilot in pilots)
     if not team.whole(task):
         return _at_best(team, names)
     materials = [team.forwards(task, name) for name in names]
     return min((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
+
+
+def _least_seconds(stroke: Stroke, pilot: Pilot) -> float:
+    """Return seconds that a stroke takes at least, in whatever parts."""
+    missions = missions_of(stroke, pilot.travel)
+    return serve_seconds(stroke, pilot.robot, pilot.kinematics) - missions.most
 
 
 def _at_best(team: Team, works: Mapping[str, Work]) -> float:
@@ -222,7 +229,7 @@ def _at_best(team: Team, works: Mapping[str, Work]) -> float:
         for i, stroke in enumerate(work.strokes):
             chain = [*chain, i] if chain and continues(work.strokes[i - 1], stroke) else [i]
             (whole,) = joined(work.strokes[j] for j in chain)
-            seconds = serve_seconds(whole, pilot.robot, pilot.kinematics)
+            seconds = _least_seconds(whole, pilot)
             rates.append(sum(done[j] for j in chain) / seconds if seconds > 0.0 else inf)
     return _WHOLLY * min(amounts) / max(rates)
 

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import accumulate, pairwise
 from math import dist
 
 from mmrs_core.planning.corners import InMissions, runs_between
 from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.stroke_missions import (
+    MissionLegs,
+    due_at,
+    halts_at_corners,
+    missions_of,
+    passed_at_begin,
+    passed_at_end,
+)
 from mmrs_core.planning.strokes import (
     NEAR,
     action_seconds,
@@ -22,7 +29,7 @@ from mmrs_core.planning.strokes import (
     uncertain_seconds,
 )
 from mmrs_core.planning.timeline import moves_along
-from mmrs_core.scene import ActionAt, Position, RobotType, Stroke
+from mmrs_core.scene import ActionAt, Position, Stroke
 from mmrs_core.scene.passing import Passage, goes_straight, passed
 from mmrs_core.scene.timing import MoveSeconds, Rates, acting
 
@@ -90,26 +97,6 @@ def legs_beside(moves: int, passes: bool) -> int:
     return min(max(1, moves) + passes, max(BESIDE))
 
 
-def passed_at_begin(stroke: Stroke) -> bool:
-    """Return whether a robot need not stop where a stroke begins."""
-    return not _stays(stroke) and not any(each.at <= NEAR for each in stroke.commands)
-
-
-def passed_at_end(stroke: Stroke) -> bool:
-    """Return whether a robot need not stop where a stroke ends."""
-    length = length_of(stroke.points)
-    return _passes(stroke) and not any(each.at >= length - NEAR for each in stroke.commands)
-
-
-def _passes(stroke: Stroke) -> bool:
-    return not _stays(stroke) and not stroke.hold and stroke.object is None
-
-
-def _stays(stroke: Stroke) -> bool:
-    """Return whether a robot stops at both ends of a stroke: it settles, or looks elsewhere beyond them."""
-    return stroke.settles or stroke.look is not None
-
-
 def _chains(parts: Sequence[Stroke]) -> Iterator[list[Stroke]]:
     """Yield the runs of parts that are one stroke when one robot does them."""
     chain = list(parts[:1])
@@ -154,19 +141,20 @@ class _Line:
         self._transit = pilot.kinematics.cruise
         self._stops = stops_of(stroke)
         self._arcs = [0.0, *accumulate(dist(one, two) for one, two in pairwise(self._stops))]
-        due = _due(stroke, self._arcs)
+        due = due_at(stroke, self._arcs)
+        certain = MissionLegs() if bound else missions_of(stroke, pilot.travel)
         uploaded = pilot.travel.uploaded(commanded_speed(stroke, pilot.kinematics)) if bound > 0 else None
-        self._uploaded = uploaded
-        halts = self._halts(stroke, pilot) if uploaded is not None else []
+        self._uploaded = certain.rates if uploaded is None else uploaded
+        halts = halts_at_corners(stroke, pilot.travel) if uploaded is not None else []
         if isinstance(beside, InMissions):
             legs, self.beside = beside.legs, beside.ends * pilot.travel.ending
         else:
             runs = list(runs_between(halts, beside)) if halts else []
-            legs = frozenset(leg for run, _ in runs for leg in run)
+            legs = frozenset(leg for run, _ in runs for leg in run).union(certain.saved)
             self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
         self._in_runs = legs
         passes = uploaded is not None and uploaded.timing.passes and pilot.kinematics.turning_radius <= 0.0
-        self._saved = dict(self._saved_on(halts, uploaded)) if legs and passes and uploaded else {}
+        self._saved = dict(self._saved_on(halts, uploaded)) if legs and passes and uploaded else certain.saved
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
         for i, (one, two) in enumerate(pairwise(self._stops)):
             between = bool(due[i] and due[i + 1])
@@ -180,16 +168,6 @@ class _Line:
             longest_end(stroke, pilot.kinematics),
         )
         self.whole = self._departures[-1] + at_the_end[1 + bound]
-
-    def _halts(self, stroke: Stroke, pilot: Pilot) -> list[bool]:
-        """Return at which of its places the robot stops for certain, corners included."""
-        halts, speed = halts_of(stroke, pilot.robot.type), commanded_speed(stroke, pilot.kinematics)
-        corners = pilot.travel.uploading
-        for i in range(1, len(halts) - 1):
-            if not halts[i] and corners is not None:
-                start, corner, end = self._stops[i - 1 : i + 2]
-                halts[i] = not corners.may_pass(start, corner, end, speed)
-        return halts
 
     def _saved_on(self, halts: Sequence[bool], uploaded: Rates) -> Iterator[tuple[int, float]]:
         """Yield the legs of missions that begin and end without a stop, and the seconds that this saves."""
@@ -208,7 +186,8 @@ class _Line:
         seconds = self._rates.from_stop_to_stop(one, two)
         if self._uploaded is None or index not in self._in_runs:
             return seconds
-        return max(seconds, self._uploaded.from_stop_to_stop(one, two) - saved)
+        flown = self._uploaded.from_stop_to_stop(one, two) - saved
+        return max(seconds, flown) if self._bound else flown
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
         each = (action_seconds(self._robot.type, action) for action in actions)
@@ -226,32 +205,10 @@ class _Line:
         beginning = self._acting(each for each in two.commands if each.at <= NEAR)
         end = self._departures[before] + self._leg(before, self._stops[before], place)
         begin = self._arrivals[after] - self._leg(after - 1, place, self._stops[after])
-        begin -= self._saved.get(after, 0.0)
+        begin -= self._saved.get(after, 0.0) if self._bound else 0.0
         if self._eased and after == before + 1:  # parts of a leg take longer than the whole, at least
             end = min(end, begin)
         return end + ending, begin - beginning
-
-
-def halts_of(stroke: Stroke, type: RobotType) -> list[bool]:
-    """Return at which of the places where a stroke stops or turns a robot stops for certain."""
-    stops, look = stops_of(stroke), stroke.look
-    if look is not None and (look.angle_degrees or not type.looks_ahead(look.device)):
-        return [True] * len(stops)
-    arcs = accumulate((dist(one, two) for one, two in pairwise(stops)), initial=0.0)
-    halts = [bool(each) for each in _due(stroke, arcs)]
-    halts[0], halts[-1] = halts[0] or _stays(stroke), halts[-1] or not _passes(stroke)
-    return halts
-
-
-def _due(stroke: Stroke, arcs: Iterable[float]) -> list[list[ActionAt]]:
-    """Return the commands of a stroke by the places, as metres along it, at which they are done."""
-    todo, found = deque(stroke.commands), []
-    for arc in arcs:
-        due = list[ActionAt]()
-        while todo and todo[0].at <= arc + NEAR:
-            due.append(todo.popleft())
-        found.append(due)
-    return found
 
 
 def longest_of(stroke: Stroke, pilot: Pilot, flown: InMissions) -> float:

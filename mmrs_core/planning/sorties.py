@@ -15,6 +15,7 @@ from math import inf
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.diversions import Diversions
 from mmrs_core.planning.states import ApproachRoute, Ready, State
+from mmrs_core.planning.stroke_missions import missions_of
 from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
 from mmrs_core.planning.travel import Route, Travel
 from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Stroke, Transit
@@ -290,12 +291,13 @@ class Pilot:
     def serve_seconds(self, stroke: Stroke) -> float:
         """Return how long the robot takes for a stroke; remembered, as rests of works are laid out again."""
         if stroke not in self._served:
-            self._served[stroke] = serve_seconds(stroke, self.robot, self.kinematics)
+            stepped = serve_seconds(stroke, self.robot, self.kinematics)
+            self._served[stroke] = stepped - missions_of(stroke, self.travel).gained
         return self._served[stroke]
 
     def serve(self, state: State, stroke: Stroke, task: str, rule: str, first: bool, last: bool) -> State:
         """Return the state after a stroke, whose first point the robot is at."""
-        seconds = serve_seconds(stroke, self.robot, self.kinematics)
+        seconds = self.serve_seconds(stroke)
         speed = commanded_speed(stroke, self.kinematics)
         end = state.time + seconds
         step = Serve(state.time, end, task, stroke, speed, rule, first, last)

@@ -136,6 +136,21 @@ def test_the_simulated_run_lasts_as_long_as_mmrs_plan_says(example, contribution
         assert sum(idle, 0.0) < 1.0
 
 
+def test_an_orbit_takes_as_long_as_planned_though_the_robot_does_not_stop_on_it(taken):
+    example = taken("barn")
+    planned, told = (
+        [
+            each.end - each.begin
+            for robot in plan.robots
+            for each in robot.steps
+            if isinstance(each, Serve) and each.stroke.look is not None
+        ]
+        for plan in (example.plan, example.timed)
+    )
+    assert planned
+    assert told == pytest.approx(planned, rel=0.03)
+
+
 def test_the_preview_says_when_each_step_is_simulated_to_be_made(taken):
     example = taken("carbon-dioxide")
     moves = example.trace.moves()

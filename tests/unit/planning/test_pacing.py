@@ -5,7 +5,8 @@ from math import cos, radians, sin
 import pytest
 from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
 
-from mmrs_core.planning.pacing import halts_of, paced
+from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.stroke_missions import halts_of
 from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Device, Look
@@ -138,3 +139,21 @@ def test_parts_of_a_curve_take_no_longer_than_their_spans_when_they_are_flown_al
     for first, last in combinations_with_replacement(range(len(pieces)), 2):
         alone = paced([*joined(pieces[first : last + 1])], pilot, 1)
         assert spans[last][1] - spans[first][0] >= alone[-1][1] - alone[0][0] - 1e-9
+
+
+@pytest.mark.parametrize(
+    "mission", [MISSION, replace(MISSION, jerk=3.0, turning=0.5), replace(MISSION, passes=False)]
+)
+@pytest.mark.parametrize("cut", [60.0, 67.0, 100.0])
+def test_a_curve_on_which_a_robot_looks_at_one_place_takes_as_long_as_its_mission(mission, cut):
+    ring = [(60.0 * sin(angle), 60.0 * cos(angle), 20.0) for angle in (radians(10.0 * k) for k in range(19))]
+    cuts = tuple(cut * k for k in range(1, 4) if cut * k < 180.0)
+    (stroke,) = road(*ring, cuts=cuts, look=Look((0.0, 0.0, 0.0))).strokes
+    pieces, pilot = parts_of(stroke), pilot_of(with_kinematics(robot(), timing=STEP, mission=mission))
+    spans = paced(pieces, pilot)
+    assert spans[-1][1] == pytest.approx(pilot.serve_seconds(stroke))
+    stepped = serve_seconds(stroke, pilot.robot, pilot.kinematics)
+    assert (pilot.serve_seconds(stroke) < stepped - 3.0) is mission.passes
+    for first, last in combinations_with_replacement(range(len(pieces)), 2):
+        (alone,) = joined(pieces[first : last + 1])
+        assert spans[last][1] - spans[first][0] == pytest.approx(pilot.serve_seconds(alone), rel=0.06)

@@ -1,0 +1,139 @@
+"""Where a robot stops along a stroke, and which legs of strokes are flown as a mission for certain.
+
+A stroke on which the robot looks at one place begins and ends with a stop. So what of it is a mission, and
+how long that takes, does not depend on what comes before and after it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import accumulate, pairwise
+from math import dist
+
+from mmrs_core.planning.corners import runs_between
+from mmrs_core.planning.strokes import NEAR, commanded_speed, length_of, stops_of
+from mmrs_core.planning.travel import Travel
+from mmrs_core.scene import ActionAt, RobotType, Stroke
+from mmrs_core.scene.passing import Passage, goes_straight, passed
+from mmrs_core.scene.timing import Leg, Push, Rates
+
+
+@dataclass(frozen=True, slots=True)
+class MissionLegs:
+    """Legs of a stroke that are part of missions.
+
+    Attributes:
+        rates: of a mission; None: there is none.
+        saved: by leg, the seconds that it takes less than from a stop to a stop: as it is passed where it
+            ends. Of the last one of a mission, less than none, as its end is noticed late.
+        gained: seconds that all of them take less than if they were commanded one by one.
+        most: seconds that any part of the stroke takes less so, added up: however it is cut, no more.
+    """
+
+    rates: Rates | None = None
+    saved: Mapping[int, float] = field(default_factory=dict)
+    gained: float = 0.0
+    most: float = 0.0
+
+
+_NONE = MissionLegs()
+
+
+def missions_of(stroke: Stroke, travel: Travel) -> MissionLegs:
+    """Return what of a stroke is flown as missions for certain: where that is quicker than leg by leg.
+
+    Nothing is where the robot looks ahead: that depends on what comes before and after.
+    """
+    if stroke.look is None or travel.uploading is None:
+        return _NONE
+    speed, stops = commanded_speed(stroke, travel.kinematics), stops_of(stroke)
+    mission, alone = travel.kinematics.in_mission(), travel.bounds(speed)[1]
+    rates = mission.rates(speed)
+    saved, gained, most = dict[int, float](), 0.0, 0.0
+    for run, _ in runs_between(halts_at_corners(stroke, travel), (0, 0)):
+        legs = list(pairwise(stops[run.start : run.stop + 1]))
+        less = [*_saved_on(legs, rates, keeps_to_legs=mission.turning_radius <= 0.0)]
+        less[-1] -= rates.share * mission.noticing
+        more = [
+            alone.from_stop_to_stop(*leg) - rates.from_stop_to_stop(*leg) + each
+            for leg, each in zip(legs, less, strict=True)
+        ]
+        most += sum(max(0.0, each) for each in more)
+        if sum(more) > 0.0:
+            saved |= zip(run, less, strict=True)
+            gained += sum(more)
+    return MissionLegs(rates, saved, gained, most)
+
+
+def _saved_on(legs: Sequence[Leg], rates: Rates, *, keeps_to_legs: bool) -> Iterator[float]:
+    """Yield the seconds that each leg of a mission saves, here and on the next, where it ends without a stop.
+
+    A robot that keeps to its legs stops at the end of the first one, and where the path turns.
+    """
+    before: Passage | None = None
+    push: Push | None = None
+    for i, leg in enumerate(legs):
+        saved = rates.from_stop_to_stop(*leg) - rates.from_stop_to_stop(*leg, push=push)
+        after = legs[i + 1] if i + 1 < len(legs) and rates.timing.passes else None
+        if after is not None and (not keeps_to_legs or (i > 0 and goes_straight(*leg, after[1]))):
+            before = passed(rates, leg, after, before, push=push)
+            saved += before.saved + before.onward
+        else:
+            before = None
+        push = rates.push(*leg, push)
+        yield saved
+
+
+def halts_at_corners(stroke: Stroke, travel: Travel) -> list[bool]:
+    """Return at which of its places a robot stops for certain, corners that it may not cut included."""
+    halts, speed = halts_of(stroke, travel.robot.type), commanded_speed(stroke, travel.kinematics)
+    stops, corners = stops_of(stroke), travel.uploading
+    for i in range(1, len(halts) - 1):
+        if not halts[i] and corners is not None:
+            start, corner, end = stops[i - 1 : i + 2]
+            halts[i] = not corners.may_pass(start, corner, end, speed)
+    return halts
+
+
+def halts_of(stroke: Stroke, type: RobotType) -> list[bool]:
+    """Return at which of the places where a stroke stops or turns a robot stops for certain."""
+    stops, look = stops_of(stroke), stroke.look
+    if look is not None and (look.angle_degrees or not type.looks_ahead(look.device)):
+        return [True] * len(stops)
+    arcs = accumulate((dist(one, two) for one, two in pairwise(stops)), initial=0.0)
+    halts = [bool(each) for each in due_at(stroke, arcs)]
+    halts[0], halts[-1] = halts[0] or _stays(stroke), halts[-1] or not _passes(stroke)
+    return halts
+
+
+def passed_at_begin(stroke: Stroke) -> bool:
+    """Return whether a robot need not stop where a stroke begins."""
+    return not _stays(stroke) and not any(each.at <= NEAR for each in stroke.commands)
+
+
+def passed_at_end(stroke: Stroke) -> bool:
+    """Return whether a robot need not stop where a stroke ends."""
+    length = length_of(stroke.points)
+    return _passes(stroke) and not any(each.at >= length - NEAR for each in stroke.commands)
+
+
+def _passes(stroke: Stroke) -> bool:
+    return not _stays(stroke) and not stroke.hold and stroke.object is None
+
+
+def _stays(stroke: Stroke) -> bool:
+    """Return whether a robot stops at both ends of a stroke: it settles, or looks elsewhere beyond them."""
+    return stroke.settles or stroke.look is not None
+
+
+def due_at(stroke: Stroke, arcs: Iterable[float]) -> list[list[ActionAt]]:
+    """Return the commands of a stroke by the places, as metres along it, at which they are done."""
+    todo, found = deque(stroke.commands), []
+    for arc in arcs:
+        due = list[ActionAt]()
+        while todo and todo[0].at <= arc + NEAR:
+            due.append(todo.popleft())
+        found.append(due)
+    return found
