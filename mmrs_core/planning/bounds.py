@@ -254,7 +254,9 @@ def _places(team: Team, task: str) -> Places:
 
 def _quickest(team: Team, names: Sequence[str], longest: float) -> Callable[[Array], Array]:
     """Return a function from level distances up to a longest to seconds that no robot falls below."""
-    kinds = [team.pilots[name].kinematics for name in dict.fromkeys(team.kinds[name] for name in names)]
+    pilots = [team.pilots[name] for name in dict.fromkeys(team.kinds[name] for name in names)]
+    kinds = [pilot.kinematics for pilot in pilots]
+    kinds += [pilot.kinematics.in_mission() for pilot in pilots if pilot.travel.uploading is not None]
     short = max(0.05, *(kinematics.accepts for kinematics in kinds))
     lengths = np.concatenate([[0.0], np.geomspace(2.0 * short, max(4.0 * short, longest), 200)])
     least = np.full(len(lengths), inf)

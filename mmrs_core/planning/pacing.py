@@ -10,6 +10,7 @@ from math import dist
 from mmrs_core.planning.corners import InMissions, runs_between
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.stroke_missions import (
+    BESIDE,
     MissionLegs,
     due_at,
     halts_at_corners,
@@ -32,10 +33,6 @@ from mmrs_core.planning.timeline import moves_along
 from mmrs_core.scene import ActionAt, Position, Stroke
 from mmrs_core.scene.passing import Passage, goes_straight, passed
 from mmrs_core.scene.timing import MoveSeconds, Rates, acting
-
-BESIDE = 2, 2
-"""Legs before and after a stroke that may continue it without a stop where nothing is known of them: a
-hop, and a leg of what is done beyond that."""
 
 
 def paced(
@@ -197,7 +194,8 @@ class _Line:
         """Return when the robot has come to the end of a part, and when the next one must begin.
 
         Where a repetition is cut, that of the one ends and that of the other begins, which takes time. The
-        first leg from there begins and ends with a stop.
+        first leg from there begins with a stop; it ends with one unless a hop and it are expected to be one
+        mission.
         """
         stop, length, place = bisect_left(self._arcs, arc - NEAR), length_of(one.points), one.points[-1]
         before, after = stop - 1, stop + (self._arcs[stop] <= arc + NEAR)
@@ -205,7 +203,10 @@ class _Line:
         beginning = self._acting(each for each in two.commands if each.at <= NEAR)
         end = self._departures[before] + self._leg(before, self._stops[before], place)
         begin = self._arrivals[after] - self._leg(after - 1, place, self._stops[after])
-        begin -= self._saved.get(after, 0.0) if self._bound else 0.0
+        if self._bound:
+            begin -= self._saved.get(after, 0.0)
+        elif two.look is None:
+            begin += self._saved.get(after - 1, 0.0)
         if self._eased and after == before + 1:  # parts of a leg take longer than the whole, at least
             end = min(end, begin)
         return end + ending, begin - beginning

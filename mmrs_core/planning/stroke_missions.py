@@ -1,7 +1,7 @@
-"""Where a robot stops along a stroke, and which legs of strokes are flown as a mission for certain.
+"""Where a robot stops along a stroke, and which of its legs are expected to be flown as a mission.
 
-A stroke on which the robot looks at one place begins and ends with a stop. So what of it is a mission, and
-how long that takes, does not depend on what comes before and after it.
+A stroke on which the robot looks at one place begins and ends with a stop, so that this does not depend on
+what comes before and after. Of others it is supposed that hops follow each other without a stop.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class MissionLegs:
 
     Attributes:
         rates: of a mission; None: there is none.
-        saved: by leg, the seconds that it takes less than from a stop to a stop: as it is passed where it
-            ends. Of the last one of a mission, less than none, as its end is noticed late.
+        saved: by leg, the seconds that it takes less than from a stop to a stop, as it is passed where it
+            ends. Of the last one of a mission less than none: its end is noticed late.
         gained: seconds that all of them take less than if they were commanded one by one.
         most: seconds that any part of the stroke takes less so, added up: however it is cut, no more.
     """
@@ -38,46 +38,48 @@ class MissionLegs:
     most: float = 0.0
 
 
+BESIDE = 2, 2
+"""Legs before and after a stroke that may continue it without a stop where nothing is known of them: a
+hop, and a leg of what is done beyond that."""
+
 _NONE = MissionLegs()
 
 
 def missions_of(stroke: Stroke, travel: Travel) -> MissionLegs:
-    """Return what of a stroke is flown as missions for certain: where that is quicker than leg by leg.
-
-    Nothing is where the robot looks ahead: that depends on what comes before and after.
-    """
-    if stroke.look is None or travel.uploading is None:
+    """Return what of a stroke is flown as missions; where the robot looks at one place, only if quicker."""
+    if travel.uploading is None or len(stroke.points) == 1:
         return _NONE
     speed, stops = commanded_speed(stroke, travel.kinematics), stops_of(stroke)
     mission, alone = travel.kinematics.in_mission(), travel.bounds(speed)[1]
-    rates = mission.rates(speed)
+    rates, halts = mission.rates(speed), halts_at_corners(stroke, travel)
     saved, gained, most = dict[int, float](), 0.0, 0.0
-    for run, _ in runs_between(halts_at_corners(stroke, travel), (0, 0)):
+    for run, _ in runs_between(halts, BESIDE if stroke.look is None else (0, 0)):
         legs = list(pairwise(stops[run.start : run.stop + 1]))
-        less = [*_saved_on(legs, rates, keeps_to_legs=mission.turning_radius <= 0.0)]
-        less[-1] -= rates.share * mission.noticing
+        straight = mission.turning_radius <= 0.0
+        less = [*_saved_on(legs, rates, begins=halts[run.start], keeps_to_legs=straight)]
+        less[-1] -= rates.share * mission.noticing * halts[run.stop]
         more = [
             alone.from_stop_to_stop(*leg) - rates.from_stop_to_stop(*leg) + each
             for leg, each in zip(legs, less, strict=True)
         ]
         most += sum(max(0.0, each) for each in more)
-        if sum(more) > 0.0:
+        if stroke.look is None or sum(more) > 0.0:
             saved |= zip(run, less, strict=True)
             gained += sum(more)
     return MissionLegs(rates, saved, gained, most)
 
 
-def _saved_on(legs: Sequence[Leg], rates: Rates, *, keeps_to_legs: bool) -> Iterator[float]:
+def _saved_on(legs: Sequence[Leg], rates: Rates, *, begins: bool, keeps_to_legs: bool) -> Iterator[float]:
     """Yield the seconds that each leg of a mission saves, here and on the next, where it ends without a stop.
 
-    A robot that keeps to its legs stops at the end of the first one, and where the path turns.
+    A robot that keeps to its legs stops at the end of a mission's first one, and where the path turns.
     """
     before: Passage | None = None
     push: Push | None = None
     for i, leg in enumerate(legs):
         saved = rates.from_stop_to_stop(*leg) - rates.from_stop_to_stop(*leg, push=push)
         after = legs[i + 1] if i + 1 < len(legs) and rates.timing.passes else None
-        if after is not None and (not keeps_to_legs or (i > 0 and goes_straight(*leg, after[1]))):
+        if after is not None and (not keeps_to_legs or (i >= begins and goes_straight(*leg, after[1]))):
             before = passed(rates, leg, after, before, push=push)
             saved += before.saved + before.onward
         else:

@@ -18,8 +18,10 @@ def complaints(scene, plan):
     robots = {robot.name: robot for robot in scene.robots}
     if [each.robot for each in plan.robots] != list(robots):
         found.append("robots are missing or in another order")
+    stops = scene.timed or plan.timed
     for each in plan.robots:
-        found += [f"{each.robot}: {fault}" for fault in _robot_faults(scene, robots[each.robot], each)]
+        faults = _robot_faults(scene, robots[each.robot], each, stops=stops)
+        found += [f"{each.robot}: {fault}" for fault in faults]
     found += _signal_faults(plan)
     found += _work_faults(scene, plan)
     found += _order_faults(scene, plan)
@@ -41,8 +43,9 @@ def flat(steps):
 
 
 class _Walk:
-    def __init__(self, scene, robot):
+    def __init__(self, scene, robot, *, stops):
         self.scene, self.robot, self.kinematics = scene, robot, robot.kinematics
+        self.stops = stops
         self.here, self.time, self.faults = robot.home, 0.0, []
         self.away = self.off = not robot.kinematics.launches
         self.used, self.length = 0.0, 0.0
@@ -67,15 +70,24 @@ class _Walk:
         self.here = points[-1]
         return seconds
 
-    def leg(self, start, end, speed):
+    def mission(self, stroke, seconds, speed):
+        """Return the seconds of a stroke that is flown as a mission, whose legs end with a stop each."""
+        known = self.kinematics.mission
+        stops = [] if known is None or self.stops or stroke.look else _with_stops(stroke)
+        if len(stops) < 4 or stroke.actions or stroke.hold:
+            return seconds
+        return sum(self.leg(a, b, speed, known.acceleration) for a, b in pairwise(stops))
+
+    def leg(self, start, end, speed, acceleration=None):
+        acceleration = acceleration or self.kinematics.timing.acceleration
         level = hypot(end[0] - start[0], end[1] - start[1]) / speed
         rise = end[2] - start[2]
         rate = self.kinematics.climb if rise > 0 else self.kinematics.descent
         even, length = max(level, abs(rise) / rate), dist(start, end)
-        if length == 0.0 or self.kinematics.timing.acceleration == inf:
+        if length == 0.0 or acceleration == inf:
             return even
-        ramp = length / even / self.kinematics.timing.acceleration
-        return even + ramp if ramp <= even else 2.0 * sqrt(length / self.kinematics.timing.acceleration)
+        ramp = length / even / acceleration
+        return even + ramp if ramp <= even else 2.0 * sqrt(length / acceleration)
 
     def lasts(self, step, seconds, more=0.0):
         if not seconds - NEAR <= step.end - step.begin <= seconds + more + NEAR:
@@ -111,6 +123,7 @@ class _Walk:
             self.faults.append(f"works on the ground {step}")
         seconds = self.move(_with_stops(step.stroke), step.speed)
         actions = [self.robot.type.devices["camera"].actions[each.action] for each in step.stroke.actions]
+        seconds = self.mission(step.stroke, seconds, step.speed)
         whole = seconds + step.stroke.hold + sum(action.duration for action in actions)
         turning = 180.0 / self.kinematics.turn_rate if step.stroke.look else 0.0
         self.lasts(step, whole, more=turning)
@@ -166,10 +179,10 @@ def _with_stops(stroke):
     return [tuple(float(np.interp(at, arcs, places[:, axis])) for axis in range(3)) for at in apart]
 
 
-def _robot_faults(scene, robot, plan):
+def _robot_faults(scene, robot, plan, *, stops):
     if not plan.steps:
         return []
-    walk = _Walk(scene, robot)
+    walk = _Walk(scene, robot, stops=stops)
     for step in plan.steps:
         walk.step(step)
     if robot.return_home and dist(walk.here, robot.home) > NEAR:

@@ -144,11 +144,13 @@ def test_parts_of_a_curve_take_no_longer_than_their_spans_when_they_are_flown_al
 @pytest.mark.parametrize(
     "mission", [MISSION, replace(MISSION, jerk=3.0, turning=0.5), replace(MISSION, passes=False)]
 )
+@pytest.mark.parametrize("look", [Look((0.0, 0.0, 0.0)), None])
 @pytest.mark.parametrize("cut", [60.0, 67.0, 100.0])
-def test_a_curve_on_which_a_robot_looks_at_one_place_takes_as_long_as_its_mission(mission, cut):
+def test_a_curve_that_is_flown_in_one_go_takes_as_long_as_its_mission(mission, look, cut):
+    """A cut within a leg is counted about a second too early or late on either side."""
     ring = [(60.0 * sin(angle), 60.0 * cos(angle), 20.0) for angle in (radians(10.0 * k) for k in range(19))]
     cuts = tuple(cut * k for k in range(1, 4) if cut * k < 180.0)
-    (stroke,) = road(*ring, cuts=cuts, look=Look((0.0, 0.0, 0.0))).strokes
+    (stroke,) = road(*ring, cuts=cuts, look=look).strokes
     pieces, pilot = parts_of(stroke), pilot_of(with_kinematics(robot(), timing=STEP, mission=mission))
     spans = paced(pieces, pilot)
     assert spans[-1][1] == pytest.approx(pilot.serve_seconds(stroke))
@@ -156,4 +158,6 @@ def test_a_curve_on_which_a_robot_looks_at_one_place_takes_as_long_as_its_missio
     assert (pilot.serve_seconds(stroke) < stepped - 3.0) is mission.passes
     for first, last in combinations_with_replacement(range(len(pieces)), 2):
         (alone,) = joined(pieces[first : last + 1])
-        assert spans[last][1] - spans[first][0] == pytest.approx(pilot.serve_seconds(alone), rel=0.06)
+        assert spans[last][1] - spans[first][0] == pytest.approx(
+            pilot.serve_seconds(alone), rel=0.06, abs=2.2
+        )
