@@ -46,9 +46,9 @@ def levelled(
         most: seconds of the mission beyond which none is sought.
     """
     explicit = _decided(found, decisions)
-    best: Traffic | None = None
+    best, known = None, dict[tuple[RobotPlan, ...], Traffic]()
     for start in (_with_exchanged(explicit, _shortest_exchange(team, found)), decisions):
-        for each in _passing(team, jobs, start, most):
+        for each in _passing(team, jobs, start, most, known):
             if best is None or (len(each.conflicts), each.cost) < (len(best.conflicts), best.cost):
                 best = each
         if best is not None and not best.conflicts and best.plan.makespan <= _NEAR * found.makespan:
@@ -56,14 +56,20 @@ def levelled(
     return best
 
 
-def _passing(team: Team, jobs: Sequence[Job], decisions: Decisions, most: float) -> Iterator[Traffic]:
+def _passing(
+    team: Team,
+    jobs: Sequence[Job],
+    decisions: Decisions,
+    most: float,
+    known: dict[tuple[RobotPlan, ...], Traffic],
+) -> Iterator[Traffic]:
     """Yield what becomes of decisions at levels, as two robots that then still meet exchange their tours.
 
-    It ends as soon as that does not help.
+    It ends as soon as that does not help. What becomes of a plan is known from then on.
     """
     fewest = inf
     while (found := planned(team, jobs, decisions)) is not None:
-        made = on_levels(team, found, most)
+        made = known[found.robots] = known.get(found.robots) or on_levels(team, found, most)
         yield made
         pairs = (pair for pair in made.conflicts if team.kinds[pair[0]] == team.kinds[pair[1]])
         pair = next(pairs, None)
