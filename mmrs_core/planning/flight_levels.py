@@ -69,7 +69,7 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
         most: seconds of the mission beyond which nothing is sought.
     """
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
-    planned = traffic = Traffic(team.scene, plan, least, timing=timing, pilots=team.pilots)
+    planned = traffic = Traffic(team.scene, plan, least, timing=timing, charges=team.charges)
     legs = {each.robot: list(_legs(team, each.robot, each.steps)) for each in plan.robots}
     best, grounded, share, spare = planned, set[str](), 1.0, planned.left_of_charges()
     for turn in range(_ROUNDS):

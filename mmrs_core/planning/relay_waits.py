@@ -10,7 +10,6 @@ from math import ceil, dist, floor, inf
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.bounds import least_makespan
-from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.delaying import retimed
 from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
@@ -221,8 +220,7 @@ class Joining:
         Raises:
             InfeasibleError: gives by how much, and what would help.
         """
-        charges = Charges(team.pilots)
-        short, used = charges.short(made), charges.most_used(made)
+        short, used = team.charges.short(made), team.charges.most_used(made)
         reasons = []
         for name in sorted(short):
             pilot = team.pilots[name]

@@ -15,7 +15,6 @@ from mmrs_core.planning.delaying import delayed
 from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.search import broken_times
-from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.sweep import Flags, Floats, Indices
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.timeline import HomeRelation, Timeline, Timelines
@@ -118,9 +117,9 @@ def separated(team: Team, plan: Plan) -> Plan:
     if least is None:
         return plan
     timing, hasty = team.timelines(hasty=False), team.timelines(hasty=True)
-    made = _separated(team, Traffic(team.scene, plan, least, timing=timing, pilots=team.pilots))
+    made = _separated(team, Traffic(team.scene, plan, least, timing=timing, charges=team.charges))
     if recharges(made) and Traffic(team.scene, made, least, timing=hasty).conflicts:
-        made = _separated(team, Traffic(team.scene, plan, least, timing=hasty, pilots=team.pilots))
+        made = _separated(team, Traffic(team.scene, plan, least, timing=hasty, charges=team.charges))
     return made
 
 
@@ -207,7 +206,7 @@ class Traffic:
         least: float,
         *,
         timing: Timelines | None = None,
-        pilots: Mapping[str, Pilot] | None = None,
+        charges: Charges | None = None,
     ) -> None:
         """Make it.
 
@@ -216,10 +215,10 @@ class Traffic:
             plan: of all robots.
             least: metres that they have to keep apart.
             timing: makes timelines of such plans; None: charging takes as long as declared.
-            pilots: by name of robot, whose charges must suffice; None: they are not looked at.
+            charges: of the robots, which must suffice; None: they are not looked at.
         """
         self.plan, self.least = plan, least
-        self._charges = None if pilots is None else Charges(pilots)
+        self._charges = charges
         self._robots = {robot.name: robot for robot in scene.robots}
         self.timing = timing or Timelines(self._robots)
         self._names = tuple(each.robot for each in plan.robots)

@@ -76,7 +76,7 @@ def signalled(team: Team, plan: Plan, most: float = inf, *, higher: bool = True)
 def _signalled(team: Team, plan: Plan, most: float, *, cut: bool, higher: bool) -> Plan | None:
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
-    traffic = Traffic(team.scene, parts, least, timing=timing, pilots=team.pilots)
+    traffic = Traffic(team.scene, parts, least, timing=timing, charges=team.charges)
     left = _STEPS
     while left > 0:
         if not traffic.conflicts:

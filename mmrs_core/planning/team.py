@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.corners import Corners
 from mmrs_core.planning.diversions import diversions_of
 from mmrs_core.planning.jobs import is_control
@@ -59,6 +60,7 @@ class Team:
         mixtures: by name of task: the sorts that can share it, where there are several.
         tasks: by name.
         asked: by name of task: the robots that the mission asks for, whatever numbers are tried.
+        charges: what they suffice for in its plans.
         kinds: by robot: the first of those that do alike what they can do.
         starts: by (robot, delay): the states in which schedules have begun.
         candidates: for shares of tasks, by all that matters to them; see `schedule`.
@@ -121,6 +123,7 @@ class Team:
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None, float]]()
         self.candidates = dict[tuple[object, ...], ShareCandidate]()
+        self.charges = Charges(self.pilots)
         self._timelines = dict[bool, Timelines]()
         self._others: dict[tuple[object, ...], Team] = {}
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
