@@ -73,7 +73,7 @@ def _codes(
     of, which = _each(slots[:, 0], slots[:, 1])
     begins: Floats = since + which.astype(np.float64) * slot
     boxes = _boxes(of, begins, slot, times, least, places, reach)
-    cell = 2.0 * max(float(np.sqrt(((boxes[:, 1, :2] - boxes[:, 0, :2]) ** 2).sum(axis=1).mean())), 1e-6)
+    cell = 0.5 * max(float(np.sqrt(((boxes[:, 1, :2] - boxes[:, 0, :2]) ** 2).sum(axis=1).mean())), 1e-6)
     cells = ((boxes[:, :, :2] - boxes[:, 0, :2].min(axis=0)) // cell).astype(np.intp)
     deep, wide = cells[:, 1].max(axis=0) + 1
     across, column = _each(cells[:, 0, 0], cells[:, 1, 0])
