@@ -235,20 +235,25 @@ class Team:
         return self._others[key].wanting({task.name: task.wanted for task in self.scene.tasks})
 
     def at_home(self, robots: frozenset[str]) -> Team:
-        """Return a team of which some robots stay at home."""
-        works = self.scene.works
-        refusals = {pair: "stays at home, so that robots keep apart" for pair in works if pair[1] in robots}
-        return Team(
-            replace(
-                self.scene,
-                works={pair: works[pair] for pair in works if pair[1] not in robots},
-                refusals={**self.scene.refusals, **refusals},
-            ),
-            fine=self.fine,
-            homebound=self.homebound,
-            spaces=self.spaces,
-            asked=self.asked,
-        )
+        """Return a team of which some robots stay at home, made once."""
+        key = ("at home", robots)
+        if key not in self._others:
+            works = self.scene.works
+            refusals = {
+                pair: "stays at home, so that robots keep apart" for pair in works if pair[1] in robots
+            }
+            self._others[key] = Team(
+                replace(
+                    self.scene,
+                    works={pair: works[pair] for pair in works if pair[1] not in robots},
+                    refusals={**self.scene.refusals, **refusals},
+                ),
+                fine=self.fine,
+                homebound=self.homebound,
+                spaces=self.spaces,
+                asked=self.asked,
+            )
+        return self._others[key].wanting({task.name: task.wanted for task in self.scene.tasks})
 
     def wanting(self, wanted: Mapping[str, int | None]) -> Team:
         """Return the same team, materials and all, where tasks want so many robots."""
