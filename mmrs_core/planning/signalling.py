@@ -30,12 +30,15 @@ from mmrs_core.planning.separation import (
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.planning.travel import kinematics_of
-from mmrs_core.scene import Await, Plan, Position, Robot, Scene, Signal, Step, Transit
+from mmrs_core.scene import Await, Plan, Position, Robot, RobotPlan, Scene, Signal, Step, Transit
 
 Corner: TypeAlias = tuple[Position, Position, Position]
 
 _Offers: TypeAlias = Generator[tuple[Plan, float], bool | None, None]
 """Yields plans, each with the step that is cut in it, and is sent whether they keep times and charges."""
+
+_Known: TypeAlias = dict[tuple[tuple[RobotPlan, ...], float, bool], Traffic | None]
+"""What becomes of plans with less than some seconds, with long legs cut or not."""
 
 DEAR = 1.01
 """Times the mission time without separation from which on it is worth to try other means than waiting."""
@@ -66,14 +69,15 @@ def signalled(team: Team, plan: Plan, most: float = inf, *, higher: bool = True)
         higher: whether a robot may fly higher, where no relay that has left could be out of its range.
     """
     best: Plan | None = None
+    known: _Known = {}
     for cut in (False, True):
         if most > DEAR * plan.makespan:
-            found = _signalled(team, plan, most, cut=cut, higher=higher)
+            found = _signalled(team, plan, most, known, cut=cut, higher=higher)
             best, most = (best, most) if found is None else (found, found.makespan)
     return best
 
 
-def _signalled(team: Team, plan: Plan, most: float, *, cut: bool, higher: bool) -> Plan | None:
+def _signalled(team: Team, plan: Plan, most: float, known: _Known, *, cut: bool, higher: bool) -> Plan | None:
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
     traffic = Traffic(team.scene, parts, least, timing=timing, charges=team.charges)
@@ -85,7 +89,10 @@ def _signalled(team: Team, plan: Plan, most: float, *, cut: bool, higher: bool) 
         steps = sum(len(each.steps) for each in traffic.plan.robots)
         if steps * len(traffic.conflicts) > left:
             break
-        further = _further(team, traffic, most, cut=cut, higher=higher)
+        asked = traffic.plan.robots, most, cut and _may_cut(traffic)
+        if asked not in known:
+            known[asked] = _further(team, traffic, most, cut=cut, higher=higher)
+        further = known[asked]
         if further is None:
             break
         left -= steps
@@ -105,8 +112,7 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool, higher: bo
     What costs least is tried first, and taken if it keeps times and charges and the two come further; None
     if nothing does.
     """
-    conflict = traffic.earliest()
-    pairs = (conflict.first, conflict.second), (conflict.second, conflict.first)
+    pairs = _first_two(traffic)
     before = {pair: _progress(traffic, *pair) for pair in pairs}
     asked = ((pair, _offers(team, traffic, *pair, cut=cut, higher=higher)) for pair in pairs)
     offers = [(pair, each) for pair, found in asked for each in found]
@@ -131,12 +137,27 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool, higher: bo
     return None
 
 
+def _may_cut(traffic: Traffic) -> bool:
+    """Return whether a robot may wait before the end of a long leg so that the two that meet first do not."""
+    return any(any(_cuts(traffic, pair[1], _place(traffic, *pair))) for pair in _first_two(traffic))
+
+
+def _first_two(traffic: Traffic) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Return (early, late) robots of the earliest conflict, either way round."""
+    conflict = traffic.earliest()
+    return (conflict.first, conflict.second), (conflict.second, conflict.first)
+
+
+def _place(traffic: Traffic, early: str, late: str) -> int:
+    """Return the first step on which the later one of two robots meets the other."""
+    return min(step for step, _, _ in traffic.met(early, late))
+
+
 def _offers(
     team: Team, traffic: Traffic, early: str, late: str, *, cut: bool, higher: bool
 ) -> Iterator[_Offers]:
     """Yield how one robot may go above another, or wait for it: by the clock, at home or not, or a signal."""
-    met = traffic.met(early, late)
-    place = min(step for step, _, _ in met)
+    place = _place(traffic, early, late)
     if higher:
         yield _lifting(team, traffic, late, place)
     for at_home in (False, True):
@@ -191,21 +212,25 @@ def _waiting_places(
     A long leg is cut shortly before its end, as at the end of a corridor.
     """
     steps = traffic.steps(late)
-    step = steps[last] if last < len(steps) else None
-    if cut and isinstance(step, Transit) and len(step.route) == 2:
-        place = _places(steps)[last]
-        for away in (_SHORT * traffic.least, _LONG * traffic.least):
-            if dist(*step.route) > 2.0 * away:
-                parts = _cut(scene.robot(late), step, away)
-                robots = (
-                    replace(each, steps=(*steps[:last], *parts, *steps[last + 1 :]))
-                    if each.robot == late
-                    else each
-                    for each in traffic.plan.robots
-                )
-                yield replace(traffic.plan, robots=tuple(robots)), last + 1, place
+    for leg, away in _cuts(traffic, late, last) if cut else ():
+        parts = _cut(scene.robot(late), leg, away)
+        robots = (
+            replace(each, steps=(*steps[:last], *parts, *steps[last + 1 :])) if each.robot == late else each
+            for each in traffic.plan.robots
+        )
+        yield replace(traffic.plan, robots=tuple(robots)), last + 1, _places(steps)[last]
     places = [each for each in range(min(last, len(steps) - 1), -1, -1) if may_wait(steps[each])]
     yield from ((traffic.plan, place, inf) for place in places[:_PLACES])
+
+
+def _cuts(traffic: Traffic, late: str, place: int) -> Iterator[tuple[Transit, float]]:
+    """Yield a long leg and by how many metres before its end it may be cut; nothing for other steps."""
+    steps = traffic.steps(late)
+    step = steps[place] if place < len(steps) else None
+    if isinstance(step, Transit) and len(step.route) == 2:
+        for away in (_SHORT * traffic.least, _LONG * traffic.least):
+            if dist(*step.route) > 2.0 * away:
+                yield step, away
 
 
 def _cut(robot: Robot, step: Transit, away: float) -> tuple[Transit, Transit]:
