@@ -73,6 +73,8 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
     legs = {each.robot: list(_legs(team, each.robot, each.steps)) for each in plan.robots}
     best, grounded, share, spare = planned, set[str](), 1.0, planned.left_of_charges()
     for turn in range(_ROUNDS):
+        if all(_meet_at_work(traffic, legs, *pair) for pair in traffic.conflicts):
+            break
         met = dict.fromkeys(_met(traffic, legs))
         closed = [leg for leg in met if len(leg.ways) == 1 and leg.robot not in grounded]
         for leg in closed:
@@ -162,6 +164,11 @@ class _Leg:
     def way(self) -> _Way:
         return self.ways[self.chosen]
 
+    @property
+    def travels(self) -> bool:
+        """Whether its robot goes from one place to another, which it may do at other levels."""
+        return any(isinstance(step, Transit) for step in self.ways[0])
+
 
 def _legs(team: Team, robot: str, steps: Sequence[Step]) -> Iterator[_Leg]:
     """Yield the legs of a robot; a launch and a recovery at home are parts of those after and before them."""
@@ -183,9 +190,25 @@ def _legs(team: Team, robot: str, steps: Sequence[Step]) -> Iterator[_Leg]:
 def _met(traffic: Traffic, legs: Mapping[str, Sequence[_Leg]]) -> Iterator[_Leg]:
     """Yield the legs on which robots may meet."""
     for one, other in traffic.conflicts:
-        for late, early, _ in traffic.met(one, other):
-            for name, step in ((one, early), (other, late)):
-                yield next(leg for leg in legs[name] if leg.begin <= step < leg.end)
+        for pair in _both(traffic, legs, one, other):
+            yield from pair
+
+
+def _both(
+    traffic: Traffic, legs: Mapping[str, Sequence[_Leg]], one: str, other: str
+) -> Iterator[tuple[_Leg, _Leg]]:
+    """Yield the legs on which two robots may meet, that of each."""
+    for late, early, _ in traffic.met(one, other):
+        yield _leg_of(legs[one], early), _leg_of(legs[other], late)
+
+
+def _leg_of(legs: Iterable[_Leg], step: int) -> _Leg:
+    return next(leg for leg in legs if leg.begin <= step < leg.end)
+
+
+def _meet_at_work(traffic: Traffic, legs: Mapping[str, Sequence[_Leg]], one: str, other: str) -> bool:
+    """Return whether two robots meet where neither travels, so that no level keeps them apart."""
+    return any(not (mine.travels or its.travels) for mine, its in _both(traffic, legs, one, other))
 
 
 def _higher(travel: Travel, own: _Way, least: float) -> Iterator[_Way]:
