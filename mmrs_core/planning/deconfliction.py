@@ -10,6 +10,7 @@ from math import ceil, inf
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import planned
+from mmrs_core.planning.effort import Effort, SearchLimit
 from mmrs_core.planning.exchanging import levelled
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.schedule import Decisions
@@ -44,7 +45,7 @@ def kept_apart(
     jobs: Sequence[Job],
     decisions: Decisions,
     found: Plan,
-    best: Plan | None,
+    limit: SearchLimit,
     dear: list[tuple[Team, Plan]],
 ) -> Plan:
     """Return a plan as its robots keep apart: by waits, flight levels and signals, or by later starts.
@@ -53,77 +54,83 @@ def kept_apart(
     """
     made, refusal = None, None
     try:
-        made = separated(team, found)
+        made = separated(team, found, limit)
         if made.makespan <= DEAR * found.makespan:
             return made
     except TooNearError as error:
         refusal = error
-    least = best if made is None else better(made, best)
-    levels = levelled(team, jobs, decisions, found, inf if least is None else least.makespan)
+    levels = levelled(team, jobs, decisions, found, _beside(limit, made))
     other = levels is not None and levels.plan.robots != found.robots
-    apart = _waiting(team, levels, least) if levels is not None and other else None
+    apart = _waiting(team, levels, _beside(limit, made)) if levels is not None and other else None
     if made is None and (levels is None or levels.conflicts):
         dear.append((team, found))
     if apart is not None:
         made = apart if made is None else better(apart, made)
     if not other if made is None else made.makespan > _WORTH_SIGNALS * found.makespan:
-        least = best if made is None else better(made, best)
-        made = signalled(team, found, inf if least is None else least.makespan) or made
-    least = best if made is None else better(made, best)
-    made = starting_later(team, decisions, partial(_planned_better, team, jobs, least)) or made
+        made = signalled(team, found, _beside(limit, made)) or made
+    made = starting_later(team, decisions, partial(_planned_better, team, jobs, _beside(limit, made))) or made
     if made is None:
         raise refusal or InfeasibleError("no plan")
     return made
 
 
-def _waiting(team: Team, levels: Traffic, best: Plan | None) -> Plan | None:
+def _beside(limit: SearchLimit, made: Plan | None) -> SearchLimit:
+    """Return what other plans must beat where one more is known."""
+    return limit if made is None else replace(limit, best=better(made, limit.best))
+
+
+def _waiting(team: Team, levels: Traffic, limit: SearchLimit) -> Plan | None:
     """Return a plan in which robots wait where levels do not keep them apart; None if none is better."""
     if not levels.conflicts:
         return levels.plan
     made: Plan | None = None
     with suppress(TooNearError):
-        made = separated(team, levels.plan)
+        made = separated(team, levels.plan, limit)
         if made.makespan <= DEAR * levels.plan.makespan:
             return made
-    least = best if made is None else better(made, best)
-    return signalled(team, levels.plan, inf if least is None else least.makespan) or made
+    return signalled(team, levels.plan, _beside(limit, made)) or made
 
 
-def _planned_better(team: Team, jobs: Sequence[Job], best: Plan | None, decisions: Decisions) -> Plan | None:
-    made = planned(team, jobs, decisions)
-    return None if made is None or better(made, best) is best else made
+def _planned_better(team: Team, jobs: Sequence[Job], limit: SearchLimit, decisions: Decisions) -> Plan | None:
+    made = None if limit.over else planned(team, jobs, decisions)
+    return None if made is None or better(made, limit.best) is limit.best else made
 
 
-def alternatives(team: Team, found: Plan | None, error: TooNearError | None) -> Iterator[tuple[Team, bool]]:
-    """Yield (team, whether its robots fly one after the other) that may help where robots come too near.
+def alternatives(team: Team, found: Plan | None, error: TooNearError | None) -> Iterator[Team]:
+    """Yield teams that may help where robots come too near.
 
     Robots may keep some of each charge for levels, transit one above the other, stay at home in part, keep
-    away from where others stand at home, end at home where they need not, or take turns.
+    away from where others stand at home, or end at home where they need not.
     """
     altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
     charging = any(
         each.kinematics.recharge is not None and each.charge < inf for each in team.pilots.values()
     )
     if charging if found is None else recharges(found):
-        yield from ((team.changed(team.homebound, spare=each), False) for each in _SPARE)
+        yield from (team.changed(team.homebound, spare=each) for each in _SPARE)
     if altitudes:
-        yield team.changed(team.homebound, altitudes=altitudes), False
+        yield team.changed(team.homebound, altitudes=altitudes)
     for smaller in _smaller(team, found) if found is not None else ():
-        yield smaller, False
+        yield smaller
         if altitudes:
-            yield smaller.changed(team.homebound, altitudes=altitudes), False
+            yield smaller.changed(team.homebound, altitudes=altitudes)
     if error is None:
         return
     if error.at_home:
-        yield team.changed(team.homebound, from_homes=least), False
+        yield team.changed(team.homebound, from_homes=least)
     before = team.scene.robots
     for names in dict.fromkeys((error.robots, frozenset(team.pilots))):
         robots = tuple(replace(robot, return_home=True) if robot.name in names else robot for robot in before)
         if robots != before:
-            yield team.changed(None, robots=robots, from_homes=least), False
+            yield team.changed(None, robots=robots, from_homes=least)
+
+
+def taking_turns(team: Team, error: TooNearError | None) -> Iterator[Team]:
+    """Yield teams whose robots may keep apart if they fly one after the other; none where they do anyhow."""
     everyone = frozenset(team.pilots)
-    yield team.changed(everyone), True
-    yield team.changed(everyone, from_homes=least), True
+    if error is not None:
+        yield team.changed(everyone)
+        yield team.changed(everyone, from_homes=distance_to_keep(team.scene))
 
 
 def _smaller(team: Team, found: Plan) -> Iterator[Team]:
@@ -146,7 +153,9 @@ def unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
         yield f"{', '.join(names)} {ends}, so that robots on the ground keep apart"
 
 
-def best_signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | None) -> Plan | None:
+def best_signalled(
+    scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan | None, effort: Effort
+) -> Plan | None:
     """Return the best plan, or a better one in which robots wait for signals of each other to keep apart."""
     plans = {
         round(each.makespan, 1): (team, each) for team, each in dear if team.scene.robots == scene.robots
@@ -156,7 +165,7 @@ def best_signalled(scene: Scene, dear: Iterable[tuple[Team, Plan]], found: Plan 
     for tried, (team, each) in enumerate([*ordered[:_MOST_SIGNALLED], *last]):
         if found is not None and tried >= _MOST_SIGNALLED:
             break
-        told = signalled(team, each, inf if found is None else found.makespan)
+        told = signalled(team, each, SearchLimit(found, effort))
         found = found if told is None else better(told, found)
     return found
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from math import inf
+
+from mmrs_core.scene import Plan
 
 SLICE = 16
 """Steps between two looks at the clock."""
@@ -96,3 +99,34 @@ class Effort:
             if self.over:
                 return
             yield step / steps
+
+
+@dataclass(frozen=True, slots=True)
+class SearchLimit:
+    """What other plans must beat, and how long they are sought: always until one is known.
+
+    Attributes:
+        best: plan so far; None: none is known.
+        effort: of the search; None: it comes to its end.
+    """
+
+    best: Plan | None = None
+    effort: Effort | None = None
+
+    @property
+    def most(self) -> float:
+        """Seconds that a plan must take less than."""
+        return inf if self.best is None else self.best.makespan
+
+    @property
+    def late(self) -> bool:
+        """Whether the search is to end as soon as a plan is known."""
+        return self.effort is not None and self.effort.over
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing is to be tried any more."""
+        return self.best is not None and self.late
+
+
+UNLIMITED = SearchLimit()

@@ -14,6 +14,7 @@ from math import inf
 import numpy as np
 
 from mmrs_core.planning.assembly import planned
+from mmrs_core.planning.effort import UNLIMITED, SearchLimit
 from mmrs_core.planning.flight_levels import on_levels
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.schedule import Decisions
@@ -32,7 +33,7 @@ _NEAR = 1.08
 
 
 def levelled(
-    team: Team, jobs: Sequence[Job], decisions: Decisions, found: Plan, most: float = inf
+    team: Team, jobs: Sequence[Job], decisions: Decisions, found: Plan, limit: SearchLimit = UNLIMITED
 ) -> Traffic | None:
     """Return the best traffic in which robots fly at other levels, and may exchange tours; None: none do.
 
@@ -43,12 +44,12 @@ def levelled(
         jobs: of the scene.
         decisions: of the plan.
         found: the plan, before robots are kept apart.
-        most: seconds of the mission beyond which none is sought.
+        limit: what the mission must beat, and until when to seek.
     """
     explicit = _decided(found, decisions)
     best, known = None, dict[tuple[RobotPlan, ...], Traffic]()
     for start in (_with_exchanged(explicit, _shortest_exchange(team, found)), decisions):
-        for each in _passing(team, jobs, start, most, known):
+        for each in _passing(team, jobs, start, limit, known):
             if best is None or (len(each.conflicts), each.cost) < (len(best.conflicts), best.cost):
                 best = each
         if best is not None and not best.conflicts and best.plan.makespan <= _NEAR * found.makespan:
@@ -60,7 +61,7 @@ def _passing(
     team: Team,
     jobs: Sequence[Job],
     decisions: Decisions,
-    most: float,
+    limit: SearchLimit,
     known: dict[tuple[RobotPlan, ...], Traffic],
 ) -> Iterator[Traffic]:
     """Yield what becomes of decisions at levels, as two robots that then still meet exchange their tours.
@@ -68,8 +69,8 @@ def _passing(
     It ends as soon as that does not help. What becomes of a plan is known from then on.
     """
     fewest = inf
-    while (found := planned(team, jobs, decisions)) is not None:
-        made = known[found.robots] = known.get(found.robots) or on_levels(team, found, most)
+    while not limit.over and (found := planned(team, jobs, decisions)) is not None:
+        made = known[found.robots] = known.get(found.robots) or on_levels(team, found, limit)
         yield made
         pairs = (pair for pair in made.conflicts if team.kinds[pair[0]] == team.kinds[pair[1]])
         pair = next(pairs, None)

@@ -17,6 +17,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from mmrs_core.planning.delaying import delayed, retimed
+from mmrs_core.planning.effort import SLICE, UNLIMITED, SearchLimit
 from mmrs_core.planning.proximity import joined, pieces_of
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.separation import Traffic, distance_to_keep, levels_above, recharges
@@ -60,20 +61,20 @@ _MOST_PAIRS = 1_000_000
 """Pairs of ways that are too near, up to which a choice is sought."""
 
 
-def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
+def on_levels(team: Team, plan: Plan, limit: SearchLimit = UNLIMITED) -> Traffic:
     """Return what becomes of a plan as robots fly legs at other levels, so that fewer, mostly none, conflict.
 
     Args:
         team: of the scene, with a minimum separation.
         plan: of the team.
-        most: seconds of the mission beyond which nothing is sought.
+        limit: what the mission must beat, and until when to seek.
     """
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     planned = traffic = Traffic(team.scene, plan, least, timing=timing, charges=team.charges)
     legs = {each.robot: list(_legs(team, each.robot, each.steps)) for each in plan.robots}
     best, grounded, share, spare = planned, set[str](), 1.0, planned.left_of_charges()
     for turn in range(_ROUNDS):
-        if all(_meet_at_work(traffic, legs, *pair) for pair in traffic.conflicts):
+        if limit.over or all(_meet_at_work(traffic, legs, *pair) for pair in traffic.conflicts):
             break
         met = dict.fromkeys(_met(traffic, legs))
         closed = [leg for leg in met if len(leg.ways) == 1 and leg.robot not in grounded]
@@ -82,7 +83,7 @@ def on_levels(team: Team, plan: Plan, most: float = inf) -> Traffic:
         choice = _Choice(traffic, plan, legs, spare)
         if not choice.pairs or choice.pairs > _MOST_PAIRS:
             break
-        share, changed = choice.improve(np.random.default_rng(turn), share, most / plan.makespan)
+        share, changed = choice.improve(np.random.default_rng(turn), share, limit)
         made = _made(team.scene, plan, legs, timing)
         overdrawn = planned.overdrawn_in(made)
         if overdrawn:
@@ -291,12 +292,13 @@ class _Choice:
         left = pairs[which] < ways[a] * ways[b]
         return one[left], other[left]
 
-    def improve(self, random: np.random.Generator, least: float, most: float) -> tuple[float, bool]:
+    def improve(self, random: np.random.Generator, least: float, limit: SearchLimit) -> tuple[float, bool]:
         """Choose ways of which fewest are too near, and with which the mission ends early.
 
         Args:
             random: chooses among ways that are equally good.
-            least, most: times the mission time that are the first limit, and the last.
+            least: times the mission time that is the first limit.
+            limit: what the last one must not exceed, and until when to seek.
 
         Returns:
             That of the last limit, and whether ways have changed.
@@ -307,8 +309,11 @@ class _Choice:
         np.add.at(longer, self._limited[chosen].ravel(), self._seconds[chosen].repeat(2))
         best, chosen, fewest, since = first, first.copy(), len(first) + 1, 0
         again = np.zeros(len(self._leg), np.intp)
-        share, limits = least, [each for each in _LIMITS if least <= each <= max(least, most)]
+        most = max(least, limit.most / self._makespan)
+        share, limits = least, [each for each in _LIMITS if least <= each <= most]
         for step, share in enumerate(each for each in limits for _ in range(self._steps)):
+            if step % SLICE == 0 and limit.over:
+                break
             room = np.concatenate([share * self._makespan - self._ends, self._spare / _AT_MOST])
             beyond = longer > room
             wrong = (conflicts[chosen] > 0) | beyond[self._limited[chosen]].any(axis=1)

@@ -13,9 +13,16 @@ from typing import Protocol
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble, idle_apart
 from mmrs_core.planning.bounds import least_makespan
-from mmrs_core.planning.deconfliction import alternatives, best_signalled, better, kept_apart, unasked_returns
+from mmrs_core.planning.deconfliction import (
+    alternatives,
+    best_signalled,
+    better,
+    kept_apart,
+    taking_turns,
+    unasked_returns,
+)
 from mmrs_core.planning.departures import begun_no_earlier, may_wait, near, waiting_at_home
-from mmrs_core.planning.effort import Effort
+from mmrs_core.planning.effort import Effort, SearchLimit
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, with_remedies
 from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
@@ -40,12 +47,14 @@ class _Search:
 
     Attributes:
         find: decisions.
+        effort: that it may make.
         dear: plans whose robots are kept apart at a cost, if at all.
         tried: makespans by what robots do, before they are kept apart.
         unlimited: a plan without deadlines and longest durations, where some are not kept in it.
     """
 
     find: _Find
+    effort: Effort
     dear: list[tuple[Team, Plan]]
     tried: dict[tuple[RobotPlan, ...], float]
     unlimited: Plan | None
@@ -84,8 +93,8 @@ def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
     effort.stopped = effort.stopped or first.stopped
 
     def planned_again(part: Scene, share: float = _QUICK, seed: int = seed) -> Plan:
-        if effort.over:
-            raise InfeasibleError("no plan: the search has ended")
+        if found is not None and effort.over:
+            raise InfeasibleError("no better plan: the search has ended")
         made = _planned(part, seed, effort.again(share))
         bound = least_makespan(Team(scene), jobs_of(scene)) if found is None else found.lower_bound
         return replace(made, lower_bound=bound, timed=part.timed and not scene.timed)
@@ -148,14 +157,14 @@ def _planned(scene: Scene, seed: int, effort: Effort) -> Plan:
         if found is not None and effort.over:
             break
         try:
-            made = _plan_asking(teams, wanted, jobs, _Search(each, dear, tried, unlimited), found)
+            made = _plan_asking(teams, wanted, jobs, _Search(each, effort, dear, tried, unlimited), found)
         except _NotBetterError:
             continue
         except InfeasibleError as error:
             refusal = refusal if wanted else error
             continue
         found, best = made, best if made is found else wanted
-    found = best_signalled(scene, dear, found)
+    found = best_signalled(scene, dear, found, effort)
     if found is None:
         raise refusal
     soonest = min(tried.values())
@@ -260,7 +269,13 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
             return best
     except TooNearError as error:
         refusal = error
-    for other, in_turns in alternatives(team, found, refusal):
+    tries = ((other, False) for other in alternatives(team, found, refusal))
+    turns = ((other, True) for other in taking_turns(team, refusal))
+    while not (limit := SearchLimit(best, search.effort)).over:
+        # Turns lead to a plan soonest, but mostly to a long one.
+        other, in_turns = next(chain(turns, tries) if limit.late else chain(tries, turns), (None, False))
+        if other is None:
+            break
         try:
             _, made = _plan_of(other, jobs, search, best, in_turns=in_turns)
         except InfeasibleError:
@@ -310,7 +325,7 @@ def _plan_of(
     search.tried[first.robots] = first.makespan
     if known or better(first, best) is best:
         raise _NotBetterError("no better plan")
-    made = kept_apart(team, jobs, decisions, first, best, search.dear)
+    made = kept_apart(team, jobs, decisions, first, SearchLimit(best, search.effort), search.dear)
     _refuse_late(team, jobs, _spans(made), lambda: made.robots)
     return first, made
 

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, dist, floor, inf
+from math import ceil, dist, floor
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.bounds import least_makespan
 from mmrs_core.planning.delaying import retimed
+from mmrs_core.planning.effort import SearchLimit
 from mmrs_core.planning.jobs import jobs_of
 from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.positions import SLACK
@@ -102,7 +103,7 @@ class Joining:
         apart: Plan | None = None
         with suppress(TooNearError):
             apart = separated(team, soonest)
-        told = signalled(team, soonest, inf if apart is None else apart.makespan, higher=False)
+        told = signalled(team, soonest, SearchLimit(apart), higher=False)
         found = apart if told is None else told
         return found or separated(team, retimed(self._scene, whole, self._steps(team, needs, in_turns=True)))
 

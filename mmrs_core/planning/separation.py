@@ -12,6 +12,7 @@ import numpy as np
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.delaying import delayed
+from mmrs_core.planning.effort import UNLIMITED, SearchLimit
 from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.search import broken_times
@@ -98,7 +99,7 @@ def distance_to_keep(scene: Scene) -> float | None:
     return scene.minimum_separation + 2.0 * scene.position_error + sum(radii[-2:]) + _ROUNDING
 
 
-def separated(team: Team, plan: Plan) -> Plan:
+def separated(team: Team, plan: Plan, limit: SearchLimit = UNLIMITED) -> Plan:
     """Return the plan in which robots wait where they must so that all keep apart; itself if they do.
 
     Of the two robots that come too near to each other first, that one waits with which the mission ends
@@ -109,17 +110,18 @@ def separated(team: Team, plan: Plan) -> Plan:
     Args:
         team: of the scene.
         plan: of the team.
+        limit: until when to seek.
 
     Raises:
-        TooNearError: waiting did not help.
+        TooNearError: waiting did not help, or it is too late to seek where.
     """
     least = distance_to_keep(team.scene)
     if least is None:
         return plan
     timing, hasty = team.timelines(hasty=False), team.timelines(hasty=True)
-    made = _separated(team, Traffic(team.scene, plan, least, timing=timing, charges=team.charges))
+    made = _separated(team, Traffic(team.scene, plan, least, timing=timing, charges=team.charges), limit)
     if recharges(made) and Traffic(team.scene, made, least, timing=hasty).conflicts:
-        made = _separated(team, Traffic(team.scene, plan, least, timing=hasty, charges=team.charges))
+        made = _separated(team, Traffic(team.scene, plan, least, timing=hasty, charges=team.charges), limit)
     return made
 
 
@@ -128,10 +130,10 @@ def recharges(plan: Plan) -> bool:
     return any(isinstance(step, Recharge) for each in plan.robots for step in each.steps)
 
 
-def _separated(team: Team, traffic: Traffic) -> Plan:
+def _separated(team: Team, traffic: Traffic, limit: SearchLimit) -> Plan:
     while traffic.conflicts:
         first = traffic.earliest()
-        options = list(_waiting(team, traffic, first))
+        options = [] if limit.over else list(_waiting(team, traffic, first))
         better = [each for each in options if len(each.conflicts) < len(traffic.conflicts)]
         if not better:
             homes = {robot.name: robot.home for robot in team.scene.robots}

@@ -19,6 +19,7 @@ from math import dist, inf
 from typing import TypeAlias
 
 from mmrs_core.planning.delaying import delayed, retimed
+from mmrs_core.planning.effort import UNLIMITED, SearchLimit
 from mmrs_core.planning.separation import (
     Traffic,
     allowed,
@@ -56,7 +57,7 @@ _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
 
 
-def signalled(team: Team, plan: Plan, most: float = inf, *, higher: bool = True) -> Plan | None:
+def signalled(team: Team, plan: Plan, limit: SearchLimit = UNLIMITED, *, higher: bool = True) -> Plan | None:
     """Return the plan in which robots go at levels or wait so that all keep apart; None if none is found.
 
     Of the two robots that come too near first, that one does with which the mission ends sooner: it waits
@@ -65,19 +66,21 @@ def signalled(team: Team, plan: Plan, most: float = inf, *, higher: bool = True)
     Args:
         team: of the scene, with a minimum separation.
         plan: of the team.
-        most: seconds that the plan must take less than.
+        limit: what the plan must beat, and until when to seek.
         higher: whether a robot may fly higher, where no relay that has left could be out of its range.
     """
     best: Plan | None = None
     known: _Known = {}
     for cut in (False, True):
-        if most > DEAR * plan.makespan:
-            found = _signalled(team, plan, most, known, cut=cut, higher=higher)
-            best, most = (best, most) if found is None else (found, found.makespan)
+        if limit.most > DEAR * plan.makespan:
+            found = _signalled(team, plan, limit, known, cut=cut, higher=higher)
+            best, limit = (best, limit) if found is None else (found, replace(limit, best=found))
     return best
 
 
-def _signalled(team: Team, plan: Plan, most: float, known: _Known, *, cut: bool, higher: bool) -> Plan | None:
+def _signalled(
+    team: Team, plan: Plan, limit: SearchLimit, known: _Known, *, cut: bool, higher: bool
+) -> Plan | None:
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
     traffic = Traffic(team.scene, parts, least, timing=timing, charges=team.charges)
@@ -87,11 +90,11 @@ def _signalled(team: Team, plan: Plan, most: float, known: _Known, *, cut: bool,
             made = _joined(team.scene, traffic.plan, plan)
             return None if Traffic(team.scene, made, least, timing=timing).conflicts else made
         steps = sum(len(each.steps) for each in traffic.plan.robots)
-        if steps * len(traffic.conflicts) > left:
+        if limit.over or steps * len(traffic.conflicts) > left:
             break
-        asked = traffic.plan.robots, most, cut and _may_cut(traffic)
+        asked = traffic.plan.robots, limit.most, cut and _may_cut(traffic)
         if asked not in known:
-            known[asked] = _further(team, traffic, most, cut=cut, higher=higher)
+            known[asked] = _further(team, traffic, limit, cut=cut, higher=higher)
         further = known[asked]
         if further is None:
             break
@@ -106,7 +109,7 @@ def _cost(plan: Plan) -> tuple[float, float, float]:
     return round(plan.makespan, 3), round(backs, 3), round(sum(each.busy for each in plan.robots), 3)
 
 
-def _further(team: Team, traffic: Traffic, most: float, *, cut: bool, higher: bool) -> Traffic | None:
+def _further(team: Team, traffic: Traffic, limit: SearchLimit, *, cut: bool, higher: bool) -> Traffic | None:
     """Return what becomes of the traffic if one of the two robots that meet first lets the other go first.
 
     What costs least is tried first, and taken if it keeps times and charges and the two come further; None
@@ -122,13 +125,13 @@ def _further(team: Team, traffic: Traffic, most: float, *, cut: bool, higher: bo
         """Put the next plan that a source offers, if it is soon enough, where it is to be tried."""
         with suppress(StopIteration):
             plan, halved = offers[number][1].send(may)
-            while plan.makespan >= most:
+            while plan.makespan >= limit.most:
                 plan, halved = offers[number][1].send(False)
             heappush(waiting, (_cost(plan), number, plan, halved))
 
     for number in range(len(offers)):
         ask(number, may=None)
-    while waiting:
+    while waiting and not limit.over:
         _, number, plan, halved = heappop(waiting)
         pair, may = offers[number][0], allowed(team, traffic, plan)
         if may and _progress(traffic.with_plan(plan, pair), *pair, halved) > before[pair]:

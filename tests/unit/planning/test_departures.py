@@ -70,3 +70,11 @@ def test_a_search_that_is_stopped_seeks_no_later_departures():
     effort = Effort(3600.0, show=lambda best, least: effort.stop())
     assert plan(whole, effort=effort).earliest == {}
     assert effort.stopped
+
+
+def test_a_departure_without_which_there_is_no_plan_is_sought_though_time_is_over():
+    tasks = {"a": task("a"), "b": task("b", earliest=400.0)}
+    whole = scene([SHORT], WORKS, after=[("a", "b")], tasks=tasks)
+    ticks = count()
+    found = plan(whole, effort=Effort(0.0, lambda: float(next(ticks))))
+    assert found.begins["b"] == pytest.approx(400.0, abs=1.0)

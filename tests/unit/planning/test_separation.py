@@ -1,6 +1,7 @@
 from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
+from time import perf_counter
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from plan_replay import complaints
 
 from mmrs_core.analysis.distance import paired_distances
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import Traffic, distance_to_keep, first_conflict, stacked_altitudes
 from mmrs_core.planning.team import Team
@@ -60,7 +62,8 @@ def test_robots_at_the_planned_distance_are_refused_no_more_than_needed():
     assert first_conflict(near, plan(near), 6.0) is None
 
 
-def test_robots_that_wait_for_each_other_aloft_take_turns():
+@pytest.mark.parametrize("seconds", [None, 0.0])
+def test_robots_that_wait_for_each_other_aloft_take_turns(seconds):
     """Each one's second task is where the other one waits: only going home in between helps."""
     team = (robot("r1"), robot("r2", (30.0, 0.0, 0.0)))
     works = {
@@ -70,7 +73,7 @@ def test_robots_that_wait_for_each_other_aloft_take_turns():
         "d": {"r2": visit((101.0, 0.0, 20.0))},
     }
     whole = scene(team, works, after=[("a", "b"), ("b", "c"), ("c", "d")], minimum_separation=10.0)
-    found = plan(whole)
+    found = plan(whole, effort=Effort(seconds, perf_counter))
     assert complaints(whole, found) == []
     assert first_conflict(whole, found, 10.0) is None
     assert [each.sorties for each in found.robots] == [2, 2]

@@ -8,6 +8,7 @@ import pytest
 from plain_scenes import road, robot, scene, visit, with_kinematics
 from plan_replay import complaints
 
+from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import distance_to_keep, first_conflict
 from mmrs_core.scene import Await, Corridor, Launch, Recover, Serve, Signal, Transit
@@ -148,3 +149,22 @@ def test_below_a_low_ceiling_drones_that_cross_wait_for_each_other():
     assert first_conflict(whole, found, distance_to_keep(whole)) is None
     assert max(place[2] for step in steps(found, Transit) for place in step.route) <= 24.0
     assert steps(found, Await)
+
+
+def time_is_over():
+    ticks = iter(range(10**6))
+    return Effort(0.0, lambda: float(next(ticks)))
+
+
+def stopped_at_the_first_schedule():
+    effort = Effort(3600.0, show=lambda best, least: effort.stop())
+    return effort
+
+
+@pytest.mark.parametrize("make_effort", [time_is_over, stopped_at_the_first_schedule])
+def test_once_the_search_is_to_end_the_first_plan_that_keeps_drones_apart_will_do(make_effort):
+    whole = fleet(3, (LANE,))
+    first = plan(whole, effort=make_effort())
+    assert complaints(whole, first) == []
+    assert first_conflict(whole, first, distance_to_keep(whole)) is None
+    assert first.makespan > 1.3 * plan(whole).makespan
