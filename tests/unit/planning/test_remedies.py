@@ -7,7 +7,7 @@ import pytest
 from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning import planner
+from mmrs_core.planning import one_search, planner
 from mmrs_core.planning.planner import plan
 from mmrs_runtime.timing import LegTiming
 
@@ -207,8 +207,9 @@ def test_deadlines_that_are_proposed_where_robots_cannot_keep_apart_in_time_can_
 
 def test_remedies_for_robots_that_cannot_keep_apart_are_not_explained_in_turn(monkeypatch):
     """No distance will do: with each that is tried there would be reasons, and remedies for these."""
-    calls, planned = [], planner._planned
-    monkeypatch.setattr(planner, "_planned", lambda *given: calls.append(given) or planned(*given))
+    calls, planned = [], one_search.planned
+    for module in (planner, one_search):
+        monkeypatch.setattr(module, "planned", lambda *given: calls.append(given) or planned(*given))
     team = (robot("r1"), robot("r2", (14.0, 0.0, 0.0)))
     places = {"a": (100.0, 100.0, 30.0), "b": (100.2, 100.0, 30.0)}
     works = {name: {f"r{k}": visit(at, hold=20.0)} for k, (name, at) in enumerate(places.items(), 1)}
