@@ -13,10 +13,8 @@ from dataclasses import replace
 from math import inf
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.limits import is_small
 from mmrs_core.scene import Await, Kinematics, Launch, Plan, Recharge, Scene, Serve
-
-_FEW_PAIRS = 100
-"""Tasks times robots up to which other departures are tried."""
 
 _LONG = 1.0
 """Seconds from which a wait counts."""
@@ -46,8 +44,7 @@ def waiting_at_home(
 
 def may_wait(scene: Scene) -> bool:
     """Return whether robots may have to wait, in a mission that is small enough to seek other departures."""
-    few = len(scene.tasks) * len(scene.robots) <= _FEW_PAIRS
-    return few and bool(scene.dependencies or any(task.earliest for task in scene.tasks))
+    return is_small(scene) and bool(scene.dependencies or any(task.earliest for task in scene.tasks))
 
 
 def without_charges(scene: Scene) -> Scene:

@@ -23,6 +23,7 @@ from mmrs_core.planning.deconfliction import (
 )
 from mmrs_core.planning.effort import Effort, SearchLimit
 from mmrs_core.planning.jobs import Job, jobs_of
+from mmrs_core.planning.limits import is_small
 from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, with_remedies
 from mmrs_core.planning.remedies import or_else, too_long
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
@@ -34,9 +35,6 @@ from mmrs_core.scene import Plan, RobotPlan, Scene
 
 _FAIR = 1.2
 """Times the mission time without separation up to which no other team is planned to keep apart for less."""
-
-_FEW_PAIRS = 100
-"""Jobs times robots up to which a refusal is worth another whole plan."""
 
 
 class _Find(Protocol):
@@ -215,19 +213,18 @@ def _plan_with(team: Team, jobs: Sequence[Job], search: _Search, best: Plan | No
         if refusal is None:
             raise InfeasibleError("no plan")
         raise UnexplainedError(
-            "no plan was found that keeps robots apart",
-            partial(_too_near, team, jobs, refusal, search.unlimited),
+            "no plan was found that keeps robots apart", partial(_too_near, team, refusal, search.unlimited)
         )
     return best
 
 
-def _too_near(team: Team, jobs: Sequence[Job], refusal: TooNearError, unlimited: Plan | None) -> list[str]:
+def _too_near(team: Team, refusal: TooNearError, unlimited: Plan | None) -> list[str]:
     """Return why robots cannot be kept apart, with a smaller distance or deadlines with which they can."""
     scene, remedies = team.scene, list[str]()
     asked = scene.minimum_separation or 0.0
     for least in (asked - refusal.short, asked / 2.0, asked / 4.0):
         rounded = floor(10.0 * least) / 10.0
-        if remedies or rounded <= 0.0 or len(jobs) * len(scene.robots) > _FEW_PAIRS:
+        if remedies or rounded <= 0.0 or not is_small(scene):
             break
         with suppress(InfeasibleError):
             planned(replace(scene, minimum_separation=rounded), 0, Effort())

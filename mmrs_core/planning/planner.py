@@ -12,6 +12,7 @@ from mmrs_core.planning.deconfliction import better
 from mmrs_core.planning.departures import begun_no_earlier, may_wait, near, waiting_at_home
 from mmrs_core.planning.effort import Effort
 from mmrs_core.planning.jobs import jobs_of
+from mmrs_core.planning.limits import is_small
 from mmrs_core.planning.one_search import UnexplainedError, planned
 from mmrs_core.planning.relaying import plan_with_relays, relay_tasks
 from mmrs_core.planning.team import Team
@@ -22,9 +23,6 @@ _QUICK, _HALF = 0.2, 0.5
 
 _SOONER = 0.98
 """Times the mission time up to which it is worth a stop at every corner."""
-
-_FEW_PAIRS = 100
-"""Tasks times robots up to which a mission is planned again to stop at every corner."""
 
 
 def plan(scene: Scene, *, seed: int = 0, effort: Effort | None = None) -> Plan:
@@ -126,7 +124,7 @@ class _Searches:
 
 def _charges_last(scene: Scene) -> bool:
     """Return whether charges are limited and missions uploaded, for few enough tasks to plan them twice."""
-    if scene.timed or scene.frame.is_local or len(scene.tasks) * len(scene.robots) > _FEW_PAIRS:
+    if scene.timed or scene.frame.is_local or not is_small(scene):
         return False
     able = [each.kinematics for each in scene.robots if each.kinematics is not None]
     return any(each.mission is not None and min(each.endurance, each.energy) < inf for each in able)
