@@ -71,8 +71,7 @@ def _codes(
     """Return the codes i · n + j of all pairs of pieces i < j with overlapping boxes, some more than once."""
     slots = np.clip((times - since) / slot, 0.0, last_slot).astype(np.intp)
     of, which = _each(slots[:, 0], slots[:, 1])
-    begins: Floats = since + which.astype(np.float64) * slot
-    boxes = _boxes(of, begins, slot, times, least, places, reach)
+    boxes = _boxes(of, since + which.astype(np.float64) * slot, slot, times, least, places, reach)
     cell = 0.5 * max(float(np.sqrt(((boxes[:, 1, :2] - boxes[:, 0, :2]) ** 2).sum(axis=1).mean())), 1e-6)
     cells = ((boxes[:, :, :2] - boxes[:, 0, :2].min(axis=0)) // cell).astype(np.intp)
     deep, wide = cells[:, 1].max(axis=0) + 1
@@ -80,21 +79,22 @@ def _codes(
     box, row = _each(cells[across, 0, 1], cells[across, 1, 1])
     entry = across[box]
     keys = (which[entry] * deep + column[box]) * wide + row
-    order = np.argsort(keys)
-    keys, entry = keys[order], entry[order]
-    here, ends = np.arange(len(keys)), np.searchsorted(keys, keys, side="right")
-    pairs = np.cumsum(ends - here - 1)
+    groups = keys * (int(owners.max()) + 1) + owners[of[entry]]
+    order = np.argsort(groups)
+    groups, keys, entry = groups[order], keys[order], entry[order]
+    begins, ends = (np.searchsorted(each, each, side="right") for each in (groups, keys))
+    pairs = np.cumsum(ends - begins)
     found = []
-    for some in np.split(here, np.searchsorted(pairs, np.arange(_AT_ONCE, int(pairs[-1]), _AT_ONCE))):
-        first, second = _each(some + 1, ends[some] - 1)
+    cuts = np.searchsorted(pairs, np.arange(_AT_ONCE, int(pairs[-1]), _AT_ONCE))
+    for some in np.split(np.arange(len(keys)), cuts):
+        first, second = _each(begins[some], ends[some] - 1)
         one, two = entry[some][first], entry[second]
-        i, j = of[one], of[two]
-        asked = (owners[i] != owners[j]) & (moved[i] | moved[j])
-        one, two, i, j = one[asked], two[asked], i[asked], j[asked]
-        near = np.ones(len(one), np.bool_)
+        near = moved[of[one]] | moved[of[two]]
         for low, high in zip(boxes[:, 0].T, boxes[:, 1].T, strict=True):
-            near &= (low[one] < high[two]) & (low[two] < high[one])
-        found.append(np.minimum(i[near], j[near]) * len(owners) + np.maximum(i[near], j[near]))
+            one, two = one[near], two[near]
+            near = (low[one] < high[two]) & (low[two] < high[one])
+        i, j = of[one[near]], of[two[near]]
+        found.append(np.minimum(i, j) * len(owners) + np.maximum(i, j))
     return np.concatenate(found)
 
 
