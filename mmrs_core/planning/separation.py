@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from itertools import chain
 from math import dist, inf, nan
 
 import numpy as np
@@ -274,18 +275,15 @@ class Traffic:
         known = [self._timelines[name].known for name in self._names]
         if not any(each[-1] for each in known):
             return i, j
-        owners, steps, over = pieces.owners.tolist(), pieces.steps.tolist(), pieces.over.tolist()
-
-        def is_over(one: int, two: int) -> bool:
-            begun = known[owners[two]][steps[two]].get(self._names[owners[one]], -1)
-            return bool(begun >= over[one])
-
-        left = [
-            not is_over(one, two) and not is_over(two, one)
-            for one, two in zip(i.tolist(), j.tolist(), strict=True)
-        ]
-        chosen = np.array(left, dtype=np.bool_)
-        return i[chosen], j[chosen]
+        begun = np.full((sum(map(len, known)), len(known)), -1)
+        for row, told in enumerate(chain.from_iterable(known)):
+            for name, step in told.items():
+                begun[row, self._names.index(name)] = step
+        rows = np.cumsum([0, *map(len, known[:-1])])[pieces.owners] + pieces.steps
+        left = (begun[rows[j], pieces.owners[i]] < pieces.over[i]) & (
+            begun[rows[i], pieces.owners[j]] < pieces.over[j]
+        )
+        return i[left], j[left]
 
     def _met(
         self, proximity: Proximity, i: Indices, j: Indices
