@@ -54,6 +54,9 @@ _CONFLICTS_PER_SECOND = 0.2
 _AT_MOST = 1.2
 """Times the seconds expected of going higher that count against a charge."""
 
+_LATER = 0.1
+"""Times the mission time by which robots may be later that fly higher, about."""
+
 _EARLY = 1e-6
 """Seconds by which a step may begin before its task may: rounding."""
 
@@ -73,8 +76,10 @@ def on_levels(team: Team, plan: Plan, limit: SearchLimit = UNLIMITED) -> Traffic
     planned = traffic = Traffic(team.scene, plan, least, timing=timing, charges=team.charges)
     legs = {each.robot: list(_legs(team, each.robot, each.steps)) for each in plan.robots}
     best, grounded, share, spare = planned, set[str](), 1.0, planned.left_of_charges()
+    if all(_meet_at_work(planned, legs, *pair) for pair in planned.conflicts):
+        return planned
     for turn in range(_ROUNDS):
-        if limit.over or all(_meet_at_work(traffic, legs, *pair) for pair in traffic.conflicts):
+        if limit.over:
             break
         met = dict.fromkeys(_met(traffic, legs))
         closed = [leg for leg in met if len(leg.ways) == 1 and leg.robot not in grounded]
@@ -208,8 +213,14 @@ def _leg_of(legs: Iterable[_Leg], step: int) -> _Leg:
 
 
 def _meet_at_work(traffic: Traffic, legs: Mapping[str, Sequence[_Leg]], one: str, other: str) -> bool:
-    """Return whether two robots meet where neither travels, so that no level keeps them apart."""
-    return any(not (mine.travels or its.travels) for mine, its in _both(traffic, legs, one, other))
+    """Return whether two robots meet where neither travels, and would also if one were somewhat later."""
+    if all(mine.travels or its.travels for mine, its in _both(traffic, legs, one, other)):
+        return False
+    works = (
+        [step for leg in legs[name] if not leg.travels for step in range(leg.begin, leg.end)]
+        for name in (one, other)
+    )
+    return traffic.least_shift(one, other, *works) > _LATER * traffic.plan.makespan
 
 
 def _higher(travel: Travel, own: _Way, least: float) -> Iterator[_Way]:

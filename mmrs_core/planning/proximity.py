@@ -84,6 +84,11 @@ def joined(parts: Sequence[Pieces]) -> Pieces:
     return Pieces(*(np.concatenate([getattr(part, each) for part in parts]) for each in fields))
 
 
+def some_of(pieces: Pieces, chosen: Flags) -> Pieces:
+    """Return those pieces of a robot that are chosen."""
+    return Pieces(*(getattr(pieces, each)[chosen] for each in Pieces.__slots__))
+
+
 class Proximity:
     """Pieces of robots with the distances to keep between them.
 

@@ -14,7 +14,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.charges import Charges
 from mmrs_core.planning.delaying import delayed
 from mmrs_core.planning.effort import UNLIMITED, SearchLimit
-from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
+from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of, some_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.sweep import Flags, Floats, Indices
@@ -375,12 +375,24 @@ class Traffic:
         """Return by how many seconds a robot must start later for others, late too; inf: never."""
         self._find_delays(late, [name for name in fixed if (name, late) not in self._apart])
         spans = [self._apart[name, late] + shift for name, shift in fixed.items()]
-        begins, ends = np.concatenate(spans, axis=1)
-        shift = 0.0
-        for begin, end in _united(begins, ends, ends > np.maximum(begins, 0.0)):
-            if begin < shift < end:
-                shift = float(np.ceil(end))
-        return shift
+        return _least_beyond(*np.concatenate(spans, axis=1))
+
+    def least_shift(self, one: str, other: str, mine: Collection[int], others: Collection[int]) -> float:
+        """Return by how many seconds one of two robots must be later or sooner to keep apart on some steps.
+
+        Args:
+            one, other: the robots.
+            mine, others: indices of their steps.
+        """
+        parts = [
+            some_of(self._pieces[name], np.isin(self._pieces[name].steps, [*steps]))
+            for name, steps in ((one, mine), (other, others))
+        ]
+        proximity = self._proximity(parts)
+        cut, count = len(parts[0]), len(proximity.pieces)
+        i, j = self._unordered(proximity.pieces, *proximity.paths(np.arange(cut), np.arange(cut, count)))
+        begins, ends = proximity.delays(i, j, _SPARE)
+        return min(_least_beyond(begins, ends), _least_beyond(-ends, -begins))
 
     def _find_delays(self, late: str, names: Sequence[str]) -> None:
         """Find between which delays a robot may come too near to some others, none of which is late."""
@@ -452,6 +464,15 @@ class Traffic:
                 step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
             )
             yield delayed_step, stop.relation is HomeRelation.HOME
+
+
+def _least_beyond(begins: Floats, ends: Floats) -> float:
+    """Return the least whole number of seconds that is in none of some open intervals."""
+    least = 0.0
+    for begin, end in _united(begins, ends, ends > np.maximum(begins, 0.0)):
+        if begin < least < end:
+            least = float(np.ceil(end))
+    return least
 
 
 def _leaves(steps: Sequence[Step]) -> float:
