@@ -94,11 +94,11 @@ class Charges:
     def _of(self, plan: Plan, names: Collection[str]) -> dict[str, list[tuple[float, float]]]:
         """Return, by robot and sortie, the seconds used and what a diversion from its end takes longer."""
         self._flown = {key: legs for each in plan.robots for key, legs in self._uploads.of(each).items()}
-        timelines = self._timing.of(plan)
+        timelines = self._timing.of(plan, names)
         given = {
             step.signal: timelines[each.robot].moments[i + 1][1]
             for each in plan.robots
-            for i, step in enumerate(each.steps)
+            for i, step in enumerate(each.steps if each.robot in timelines else ())
             if isinstance(step, Signal)
         }
         return {

@@ -227,7 +227,7 @@ class Traffic:
         self._names = tuple(each.robot for each in plan.robots)
         self._timelines: Mapping[str, Timeline] = {}
         self._pieces: Mapping[str, Pieces] = {}
-        self._delays: dict[str, list[tuple[DelayedStep, bool]]] = {}
+        self._delays: dict[tuple[str, int | None], list[tuple[DelayedStep, bool]]] = {}
         self._apart: dict[tuple[str, str], Floats] = {}
         self._meetings: Mapping[tuple[str, str], tuple[Indices, Indices]] = {}
         self.conflicts: Mapping[tuple[str, str], Conflict] = {}
@@ -247,7 +247,7 @@ class Traffic:
 
     def _update(self, changed: frozenset[str], names: Collection[str]) -> None:
         """Find where those of some robots who have changed come too near to others of them."""
-        self._timelines, self._delays, self._apart = self.timing.of(self.plan), {}, {}
+        self._timelines, self._delays, self._apart = self.timing.of(self.plan, names), {}, {}
         fresh = {
             name: pieces_of(self._timelines[name].rides, number)
             for number, name in enumerate(self._names)
@@ -272,8 +272,8 @@ class Traffic:
 
     def _unordered(self, pieces: Pieces, i: Indices, j: Indices) -> tuple[Indices, Indices]:
         """Return those pairs of which neither piece is over for certain before the other one begins."""
-        known = [self._timelines[name].known for name in self._names]
-        if not any(each[-1] for each in known):
+        known = [self._timelines[name].known if name in self._timelines else () for name in self._names]
+        if not any(each[-1] for each in known if each):
             return i, j
         begun = np.full((sum(map(len, known)), len(known)), -1)
         for row, told in enumerate(chain.from_iterable(known)):
@@ -433,28 +433,36 @@ class Traffic:
             at_home: whether it can wait at home only.
             last: the step up to which it must keep apart; None: to the end.
         """
-        if name not in self._delays:
-            self._delays[name] = list(self._delayed_steps(name))
+        if (name, last) not in self._delays:
+            self._delays[name, last] = list(self._delayed_steps(name, last))
         delays = [
             replace(step, may_wait=step.may_wait and (is_home or not at_home))
-            for step, is_home in self._delays[name]
+            for step, is_home in self._delays[name, last]
         ]
-        return waits_before(delays if last is None else delays[: last + 1])
+        return waits_before(delays)
 
-    def _delayed_steps(self, name: str) -> Iterator[tuple[DelayedStep, bool]]:
-        """Yield what limits the delay of each step of a robot, and whether it begins at its home."""
+    def _delayed_steps(self, name: str, last: int | None) -> Iterator[tuple[DelayedStep, bool]]:
+        """Yield what limits the delay of each step of a robot, and whether it begins at its home.
+
+        Args:
+            name: of the robot.
+            last: the step after which none are yielded; None: all are.
+        """
         number, timeline = self._names.index(name), self._timelines[name]
-        stops = pieces_of(timeline.stops, number)
+        mine, places = self._pieces[name], timeline.stops
+        if last is not None:
+            mine, places = some_of(mine, mine.steps <= last), places[: last + 1]
+        stops = pieces_of(places, number)
         parts = [self._pieces[other] for other in self._names if other != name]
-        proximity = self._proximity([*parts, self._pieces[name], stops])
-        count, own = len(proximity.pieces), len(self._pieces[name]) + len(stops)
+        proximity = self._proximity([*parts, mine, stops])
+        count, own = len(proximity.pieces), len(mine) + len(stops)
         i, j = proximity.paths(np.arange(count - own), np.arange(count - own, count))
         i, j = self._unordered(proximity.pieces, i, j)
         begins, ends = proximity.delays(i, j, _SPARE)
         standing = j >= count - len(stops)
         steps = proximity.pieces.steps[j]
         plan = self.steps(name)
-        for index, stop in enumerate(timeline.stops):
+        for index, stop in enumerate(places):
             step = plan[index] if index < len(plan) else None
             here = steps == index
             delayed_step = DelayedStep(

@@ -9,7 +9,7 @@ until after the last.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from itertools import pairwise
@@ -174,16 +174,22 @@ class Timelines:
         self._robots, self._hasty, self._longest = robots, hasty, longest
         self._passages: dict[str, _Passages] = {name: {} for name in robots}
 
-    def of(self, plan: Plan) -> dict[str, Timeline]:
+    def of(self, plan: Plan, names: Collection[str] | None = None) -> dict[str, Timeline]:
         """Return the timeline of every robot of a plan, all arms of choices included.
 
         Robots without steps stay at home.
 
+        Args:
+            plan: of all robots.
+            names: of those that are asked for, to which those are added that these wait for; None: all.
+
         Raises:
             InternalError: robots wait for each other.
         """
-        walks = {each.robot: self._walk(each.robot) for each in plan.robots}
-        left = {each.robot: list(reversed(each.steps)) for each in plan.robots}
+        asked = None if names is None else _with_senders(plan, names)
+        robots = [each for each in plan.robots if asked is None or each.robot in asked]
+        walks = {each.robot: self._walk(each.robot) for each in robots}
+        left = {each.robot: list(reversed(each.steps)) for each in robots}
         given: dict[str, _Given] = {}
         while any(left.values()):
             before = sum(map(len, left.values()))
@@ -207,6 +213,20 @@ class Timelines:
     def _walk(self, name: str) -> _Walk:
         robot = self._robots[name]
         return _Walk(robot, kinematics_of(robot), self._hasty, self._longest, self._passages[name])
+
+
+def _with_senders(plan: Plan, names: Collection[str]) -> set[str]:
+    """Return some robots of a plan and all whose signals they wait for, or wait for in turn."""
+    steps = {each.robot: each.steps for each in plan.robots}
+    senders = {step.signal: name for name, mine in steps.items() for step in mine if isinstance(step, Signal)}
+    found, left = set[str](), [*names]
+    while left:
+        name = left.pop()
+        if name not in found:
+            found.add(name)
+            awaits = (step for step in steps[name] if isinstance(step, Await))
+            left += (senders[signal] for step in awaits for signal in step.signals)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
