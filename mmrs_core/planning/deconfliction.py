@@ -10,12 +10,12 @@ from math import ceil, inf
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import planned
+from mmrs_core.planning.conflicts import TooNearError
 from mmrs_core.planning.effort import Effort, SearchLimit
 from mmrs_core.planning.exchanging import levelled
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.separation import (
-    TooNearError,
     Traffic,
     distance_to_keep,
     recharges,

@@ -13,6 +13,7 @@ from typing import Protocol
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble, idle_apart
 from mmrs_core.planning.bounds import least_makespan
+from mmrs_core.planning.conflicts import TooNearError
 from mmrs_core.planning.deconfliction import (
     alternatives,
     best_signalled,
@@ -28,7 +29,6 @@ from mmrs_core.planning.refusals import in_words, reasons_for, shared_choices, w
 from mmrs_core.planning.remedies import or_else, too_long
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
-from mmrs_core.planning.separation import TooNearError
 from mmrs_core.planning.team import Team, teams_to_try
 from mmrs_core.planning.time_remedies import for_times, later_times
 from mmrs_core.scene import Plan, RobotPlan, Scene

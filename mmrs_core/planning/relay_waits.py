@@ -10,6 +10,7 @@ from math import ceil, dist, floor
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.bounds import least_makespan
+from mmrs_core.planning.conflicts import TooNearError
 from mmrs_core.planning.delaying import retimed
 from mmrs_core.planning.effort import SearchLimit
 from mmrs_core.planning.jobs import jobs_of
@@ -17,7 +18,7 @@ from mmrs_core.planning.materials import allowed_by_charge, kept_of_charge
 from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.reach import Reach, reach_of, unsure
 from mmrs_core.planning.remedies import lifetime_of
-from mmrs_core.planning.separation import TooNearError, separated
+from mmrs_core.planning.separation import separated
 from mmrs_core.planning.signalling import signalled
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import length_of
