@@ -66,14 +66,23 @@ def passed(
 ) -> Passage:
     """Return what a robot saves that passes where one leg ends and another begins.
 
+    Of legs that are so short that they are taken as one, each saves its share.
+
     Args:
         before, after: the legs.
         entered: with which it begins the one before; None: from a stop.
         onward: rates of the one after; None: these.
         push: with which it begins the one before; None: not known.
     """
+    onward = onward or rates
+    many, more = rates.together(*before), onward.together(*after)
+    if many > 1 or more > 1:
+        whole = moved(before[1], before, -many * dist(*before)), before[1]
+        beyond = after[0], moved(after[0], after, more * dist(*after))
+        passage = passed(rates, whole, beyond, entered, onward, push)
+        return passage._replace(saved=passage.saved / many, onward=passage.onward / more)
     if rates.timing.slows_down:
-        return _slowed(rates, before, after, entered or Passage(0.0, 0.0), onward or rates, push)
+        return _slowed(rates, before, after, entered or Passage(0.0, 0.0), onward, push)
     settled, both = settling(rates, *before), overlap(rates, before, after) / 2.0
     starting = min(rates.timing.starting, settled)
     return Passage(settled - starting + both, both + starting)

@@ -186,8 +186,10 @@ class Rates:
         if self.bound > 0 and self.timing.slows_down:
             start = self._behind_start(start, end)
         seconds = self.share * self._straight(start, end, push)
-        if not self.bound and 0.0 < (length := dist(start, end)) <= self.accepts:
-            seconds = self._among_short_ones(start, end, int(self.accepts / length) + 1)
+        if (together := self.together(start, end)) > 1:
+            seconds = (
+                self._straight(start, moved(start, (start, end), together * dist(start, end))) / together
+            )
         if self.bound and self.timing.still > 0.0:
             inexact = self._between_inexact_ends(start, end)
             seconds = min(seconds, inexact) if self.bound < 0 else max(seconds, inexact)
@@ -195,10 +197,13 @@ class Rates:
             seconds += self.timing.stall * exp(-dist(start, end) / self.timing.stall_within)
         return max(self.least, seconds + self.turning(start, end, facing))
 
-    def _among_short_ones(self, start: Position, end: Position, legs: int) -> float:
-        """Return the seconds of each of so many legs of which the robot takes no notice but of the last."""
-        east, north, up = (p + legs * (q - p) for p, q in zip(start, end, strict=True))
-        return self._straight(start, (east, north, up)) / legs
+    def together(self, start: Position, end: Position) -> int:
+        """Return how many legs like this one the robot is expected to take as one.
+
+        That is as many as are so short together that it takes no notice of the ends of all but the last.
+        """
+        length = dist(start, end)
+        return int(self.accepts / length) + 1 if not self.bound and 0.0 < length <= self.accepts else 1
 
     def turning(self, start: Position, end: Position, facing: float | None = None) -> float:
         """Return the seconds that it takes to get onto a leg, by shunting or by a curve.

@@ -285,6 +285,19 @@ def test_legs_within_the_acceptance_are_taken_together():
     assert rates.latest().from_stop_to_stop(HERE, east(0.6)) == seconds(LegTiming(1.0), 0.6)
 
 
+@given(timings(), st.floats(0.02, 0.5), st.floats(0.5, 20.0))
+def test_passed_legs_that_are_taken_together_save_no_more_than_as_one(timing, length, speed):
+    """Else what a stop costs would be saved at each of them, though there is none."""
+    found = replace(rates(timing, speed), accepts=0.5)
+    many = found.together(HERE, east(length))
+    long = many * length
+    whole = passed(found, (HERE, east(long)), (east(long), east(2 * long)))
+    each = passed(found, (HERE, east(length)), (east(length), east(2 * length)))
+    assert many * each.saved == pytest.approx(whole.saved)
+    assert many * each.onward == pytest.approx(whole.onward)
+    assert found.from_stop_to_stop(HERE, east(length)) >= each.saved + each.onward - 1e-9
+
+
 @given(metres=st.floats(9.7, 60.0), radius=st.floats(0.5, 3.0), speed=st.floats(0.5, 3.0))
 def test_the_latest_seconds_of_a_car_cover_a_target_behind_it(metres, radius, speed):
     rover = Kinematics(
