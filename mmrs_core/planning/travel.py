@@ -383,10 +383,13 @@ class Travel:
             route = self._through(self.entries, self.robot.home, goal, goal[2])
             if isinstance(route, str):
                 return route
-            out = self.kinematics.setting_out()
-            whole = MoveSeconds(*(a + b for a, b in zip(route.bounds, out, strict=True)))
-            return self._route(route.points, whole, route.length)
+            return self._route(route.points, self._setting_out(route.bounds), route.length)
         return self._upwards(goal, self.entries)
+
+    def _setting_out(self, seconds: MoveSeconds) -> MoveSeconds:
+        """Return how long what a robot does from home on takes if it has to set out."""
+        out = self.kinematics.setting_out()
+        return MoveSeconds(*(a + b for a, b in zip(seconds, out, strict=True)))
 
     def _inward(self, start: Position) -> Route | str:
         if not self.kinematics.launches:
@@ -418,7 +421,9 @@ class Travel:
             return route
         rise = height - self.robot.home[2]
         upright = self.kinematics.launching(rise) if outwards else self.kinematics.landing(rise)
-        return self._route(route.points, self._upright(upright, route), route.length + rise, height)
+        whole = self._upright(upright, route)
+        whole = self._setting_out(whole) if outwards else whole
+        return self._route(route.points, whole, route.length + rise, height)
 
     def _through(self, corridors: Corridors, start: Position, goal: Position, level: float) -> Route | str:
         """Return the quickest route that leads through one of some corridors; or why there is none.

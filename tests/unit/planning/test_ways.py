@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from plain_scenes import box, road, robot, scene, visit
+from plain_scenes import box, road, robot, scene, visit, with_kinematics
 from sound_plans import sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
+from mmrs_core.planning.team import Team
 from mmrs_core.scene import Launch, Transit
 
 
@@ -61,3 +62,15 @@ def test_points_of_one_task_are_gone_between_at_their_speed():
 def test_a_point_that_is_never_reached_is_refused():
     with pytest.raises(InfeasibleError, match="its speed there is zero"):
         plan(scene([robot()], {"a": visit((400.0, 0.0, 20.0), slow_down=0.0)}))
+
+
+def test_the_first_leg_after_a_launch_begins_late_where_commands_take_time():
+    plain, late = (
+        Team(scene([with_kinematics(robot(), guiding=seconds)], {"a": visit((90.0, 0.0, 30.0))})).pilots["r1"]
+        for seconds in (0.0, 1.8)
+    )
+    out, later = (each.travel.leave((90.0, 0.0, 30.0)) for each in (plain, late))
+    assert (later.seconds, later.longest) == pytest.approx((out.seconds + 1.8, out.longest + 1.8))
+    assert later.lead == pytest.approx(out.lead + 1.8)
+    back, too = (each.travel.go_home((90.0, 0.0, 30.0)) for each in (plain, late))
+    assert back == too
