@@ -38,7 +38,7 @@ def plan_in_time(scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[P
         except InfeasibleError as error:
             if reasons:
                 break
-            raise error
+            return _kept_in_simulation(scene, plan, timed, error)
         times = timed(made)
         found = [] if times is None else [*_overdue(scene, times)]
         if times is None or not found:
@@ -48,6 +48,28 @@ def plan_in_time(scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[P
             tried, tasks=tuple(_tightened(each, scene.task(each.name), times) for each in tried.tasks)
         )
     raise InfeasibleError(f"no plan keeps all times as it is simulated: {reasons[0]}", reasons)
+
+
+def _kept_in_simulation(
+    scene: Scene,
+    plan: Callable[[Scene], Plan],
+    timed: Callable[[Plan], Plan | None],
+    refusal: InfeasibleError,
+) -> Plan:
+    """Return the plan without limits, if it keeps them as it is simulated though by the planner's times not.
+
+    Raises:
+        InfeasibleError: the refusal; the plan does not keep them, or there is none.
+    """
+    tasks = tuple(replace(task, deadline=None, longest=None) for task in scene.tasks)
+    try:
+        made = plan(replace(scene, tasks=tasks))
+    except InfeasibleError:
+        raise refusal from None
+    times = timed(made)
+    if times is None or any(_overdue(scene, times)):
+        raise refusal
+    return made
 
 
 def _overdue(scene: Scene, times: Plan) -> list[str]:

@@ -14,8 +14,12 @@ WORKS = {"near": visit((100.0, 0.0, 20.0), hold=10.0), "far": visit((300.0, 0.0,
 
 def later(made):
     """Return a plan whose tasks take a tenth longer, from the mission's start on."""
-    longer = ({name: 1.1 * time for name, time in times.items()} for times in (made.begins, made.ends))
-    begins, ends = longer
+    return sooner(made, 1.1)
+
+
+def sooner(made, share):
+    """Return a plan whose tasks begin and end at a share of its times."""
+    begins, ends = ({name: share * at for name, at in times.items()} for times in (made.begins, made.ends))
     return replace(made, begins=begins, ends=ends)
 
 
@@ -44,6 +48,17 @@ def test_a_deadline_that_no_behaviour_keeps_is_refused_with_one_that_would_do():
         plan_in_time(whole, plan, later)
     enough = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=57.0)})
     assert plan_in_time(enough, plan, later) == plan(enough)
+
+
+def test_a_deadline_that_only_the_behaviour_keeps_is_none_to_be_refused_for():
+    """By the planner's times it is missed; the behaviour takes less."""
+    whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=50.0)})
+    with pytest.raises(InfeasibleError):
+        plan(whole)
+    made = plan_in_time(whole, plan, lambda made: sooner(made, 0.9))
+    assert sooner(made, 0.9).ends["far"] < 50.0 < made.ends["far"]
+    with pytest.raises(InfeasibleError, match=r"task 'far' ends 52 s .* a deadline of 52 s would do"):
+        plan_in_time(whole, plan, lambda made: sooner(made, 0.99))
 
 
 def test_a_duration_that_the_behaviour_exceeds_is_refused():
