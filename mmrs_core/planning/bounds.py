@@ -21,10 +21,10 @@ import shapely
 from numpy.typing import NDArray
 
 from mmrs_core.planning.few_places import longest_to_few
+from mmrs_core.planning.flown_legs import flown_legs
 from mmrs_core.planning.forests import least_longest, shared, spanning_tree
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.stroke_missions import missions_of
 from mmrs_core.planning.strokes import commanded_speed, continues, joined, serve_seconds
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Coverage, Stroke, Work, distinct_works
@@ -212,8 +212,8 @@ def _work(team: Team, task: str) -> float:
 
 def _least_seconds(stroke: Stroke, pilot: Pilot) -> float:
     """Return seconds that a stroke takes at least, in whatever parts."""
-    missions = missions_of(stroke, pilot.travel)
-    return serve_seconds(stroke, pilot.robot, pilot.kinematics) - missions.most
+    flown = flown_legs(stroke, pilot.travel)
+    return serve_seconds(stroke, pilot.robot, pilot.kinematics) - flown.most
 
 
 def _at_best(team: Team, works: Mapping[str, Work]) -> float:

@@ -8,16 +8,16 @@ from itertools import accumulate, pairwise
 from math import dist
 
 from mmrs_core.planning.corners import InMissions, runs_between
-from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.stroke_missions import (
+from mmrs_core.planning.flown_legs import (
     BESIDE,
-    MissionLegs,
+    FlownLegs,
     due_at,
+    flown_legs,
     halts_at_corners,
-    missions_of,
     passed_at_begin,
     passed_at_end,
 )
+from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import (
     NEAR,
     action_seconds,
@@ -139,19 +139,26 @@ class _Line:
         self._stops = stops_of(stroke)
         self._arcs = [0.0, *accumulate(dist(one, two) for one, two in pairwise(self._stops))]
         due = due_at(stroke, self._arcs)
-        certain = MissionLegs() if bound else missions_of(stroke, pilot.travel)
+        certain = FlownLegs() if bound else flown_legs(stroke, pilot.travel)
         uploaded = pilot.travel.uploaded(commanded_speed(stroke, pilot.kinematics)) if bound > 0 else None
-        self._uploaded = certain.rates if uploaded is None else uploaded
+        self._uploaded = certain.mission if uploaded is None else uploaded
         halts = halts_at_corners(stroke, pilot.travel) if uploaded is not None else []
         if isinstance(beside, InMissions):
             legs, self.beside = beside.legs, beside.ends * pilot.travel.ending
         else:
             runs = list(runs_between(halts, beside)) if halts else []
-            legs = frozenset(leg for run, _ in runs for leg in run).union(certain.saved)
+            legs = frozenset(leg for run, _ in runs for leg in run).union(certain.legs)
             self.beside = sum(pilot.travel.upload_seconds(ends) for _, ends in runs)
         self._in_runs = legs
+        self._halts, self._ending = halts, pilot.travel.ending
+        self._hop = pilot.travel.upload_seconds(1) if halts else 0.0
+        self._stays = stroke.look is not None
         passes = uploaded is not None and uploaded.timing.passes and pilot.kinematics.turning_radius <= 0.0
-        self._saved = dict(self._saved_on(halts, uploaded)) if legs and passes and uploaded else certain.saved
+        self._saved = (
+            dict(self._saved_on(halts, uploaded))
+            if legs and passes and uploaded
+            else dict(enumerate(certain.saved))
+        )
         self._arrivals, self._departures = [0.0], [self._acting(due[0])]
         for i, (one, two) in enumerate(pairwise(self._stops)):
             between = bool(due[i] and due[i + 1])
@@ -182,7 +189,7 @@ class _Line:
             return self._rates.eased(one, two, 0.0 if index else self._transit)
         seconds = self._rates.from_stop_to_stop(one, two)
         if self._uploaded is None or index not in self._in_runs:
-            return seconds
+            return seconds if self._bound else seconds - saved
         flown = self._uploaded.from_stop_to_stop(one, two) - saved
         return max(seconds, flown) if self._bound else flown
 
@@ -195,7 +202,7 @@ class _Line:
 
         Where a repetition is cut, that of the one ends and that of the other begins, which takes time. The
         first leg from there begins with a stop; it ends with one unless a hop and it are expected to be one
-        mission.
+        mission. What is cut may be part of missions with hops.
         """
         stop, length, place = bisect_left(self._arcs, arc - NEAR), length_of(one.points), one.points[-1]
         before, after = stop - 1, stop + (self._arcs[stop] <= arc + NEAR)
@@ -205,11 +212,39 @@ class _Line:
         begin = self._arrivals[after] - self._leg(after - 1, place, self._stops[after])
         if self._bound:
             begin -= self._saved.get(after, 0.0)
-        elif two.look is None:
+        elif two.look is None or after - 1 not in self._in_runs:
             begin += self._saved.get(after - 1, 0.0)
         if self._eased and after == before + 1:  # parts of a leg take longer than the whole, at least
             end = min(end, begin)
-        return end + ending, begin - beginning
+        end += ending
+        begin -= beginning
+        if self._bound > 0 and self._halts:
+            first = max((i for i in range(before + 1) if self._halts[i]), default=0)
+            last = next((i for i in range(after, len(self._halts)) if self._halts[i]), len(self._stops) - 1)
+            end += self._led_on(first, [*self._stops[first:stop], place], self._ending, not ending)
+            begin -= self._led_on(after - 1, [place, *self._stops[after : last + 1]], 0.0, not beginning)
+        return end, begin
+
+    def _led_on(self, first: int, stops: Sequence[Position], ending: float, passes: bool) -> float:
+        """Return how much longer legs on one side of a cut may take there, as a mission with a hop beyond it.
+
+        Args:
+            first: number of the first leg.
+            stops: of the legs, to or from where the robot stops for certain.
+            ending: seconds of the end of a mission there.
+            passes: whether nothing is done at the cut.
+        """
+        legs = [*enumerate(pairwise(stops), first)]
+        if self._stays:
+            return ending * (legs[-1][0] in self._in_runs)
+        if not passes or self._uploaded is None:
+            return 0.0
+        more = (
+            self._uploaded.from_stop_to_stop(*leg) - self._rates.from_stop_to_stop(*leg)
+            for i, leg in legs
+            if i not in self._in_runs
+        )
+        return self._hop + sum(max(0.0, each) for each in more)
 
 
 def longest_of(stroke: Stroke, pilot: Pilot, flown: InMissions) -> float:

@@ -14,8 +14,8 @@ from math import inf
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.diversions import Diversions
+from mmrs_core.planning.flown_legs import flown_legs
 from mmrs_core.planning.states import ApproachRoute, Ready, State
-from mmrs_core.planning.stroke_missions import missions_of
 from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
 from mmrs_core.planning.travel import Route, Travel
 from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Stroke, Transit
@@ -292,7 +292,7 @@ class Pilot:
         """Return how long the robot takes for a stroke; remembered, as rests of works are laid out again."""
         if stroke not in self._served:
             stepped = serve_seconds(stroke, self.robot, self.kinematics)
-            self._served[stroke] = stepped - missions_of(stroke, self.travel).gained
+            self._served[stroke] = stepped - flown_legs(stroke, self.travel).gained
         return self._served[stroke]
 
     def serve(self, state: State, stroke: Stroke, task: str, rule: str, first: bool, last: bool) -> State:

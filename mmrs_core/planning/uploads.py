@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from mmrs_core.planning.corners import InMissions, runs_between
+from mmrs_core.planning.flown_legs import halts_of
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.stroke_missions import halts_of
 from mmrs_core.planning.strokes import commanded_speed, stops_of
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.scene import Position, RobotPlan, Serve, Transit

@@ -14,6 +14,10 @@ from mmrs_core.planning.team import Team
 from mmrs_core.scene import Repetition
 from mmrs_runtime.timing import LegTiming
 
+STEP = LegTiming(2.5, deceleration=1.5, jerk=5.0, spread=0.18)
+QUICK_STEP = LegTiming(0.5, spread=0.18)
+MISSION = LegTiming(2.5, jerk=0.9, corner_radius=2.0, settling=1.55, spread=0.18)
+
 places = st.tuples(st.integers(0, 400), st.integers(0, 400), st.sampled_from([20, 30]))
 
 
@@ -93,3 +97,14 @@ def test_the_soonest_is_never_later_than_the_latest_and_even_speed_without_actio
     if not any(part.commands for part in parts[first : last + 1]):
         even = seconds_of(parts[first : last + 1], steady)
         assert quickest <= even + 1e-6
+
+
+@given(cut_roads(), st.data(), st.sampled_from([STEP, QUICK_STEP]))
+def test_parts_that_become_missions_with_hops_take_no_longer_than_counted(parts, data, timing):
+    each = with_kinematics(robot(), timing=timing, mission=MISSION, noticing=0.5)
+    pilot = Team(scene([each], {"a": visit((0.0, 9.0, 20.0))})).pilots["r1"]
+    spans = paced(parts, pilot, 1)
+    first = data.draw(st.integers(0, len(parts) - 1))
+    last = data.draw(st.integers(first, len(parts) - 1))
+    alone = paced(joined(parts[first : last + 1]), pilot, 1)
+    assert spans[last][1] - spans[first][0] >= alone[-1][1] - alone[0][0] - 1e-6

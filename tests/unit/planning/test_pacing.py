@@ -1,12 +1,12 @@
 from dataclasses import replace
 from itertools import combinations_with_replacement
-from math import cos, radians, sin
+from math import cos, dist, radians, sin
 
 import pytest
 from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
 
+from mmrs_core.planning.flown_legs import halts_of
 from mmrs_core.planning.pacing import paced
-from mmrs_core.planning.stroke_missions import halts_of
 from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Device, Look
@@ -151,7 +151,10 @@ def test_a_curve_that_is_flown_in_one_go_takes_as_long_as_its_mission(mission, l
     ring = [(60.0 * sin(angle), 60.0 * cos(angle), 20.0) for angle in (radians(10.0 * k) for k in range(19))]
     cuts = tuple(cut * k for k in range(1, 4) if cut * k < 180.0)
     (stroke,) = road(*ring, cuts=cuts, look=look).strokes
-    pieces, pilot = parts_of(stroke), pilot_of(with_kinematics(robot(), timing=STEP, mission=mission))
+    pieces, pilot = (
+        parts_of(stroke),
+        pilot_of(with_kinematics(robot(), timing=replace(STEP, passes=False), mission=mission)),
+    )
     spans = paced(pieces, pilot)
     assert spans[-1][1] == pytest.approx(pilot.serve_seconds(stroke))
     stepped = serve_seconds(stroke, pilot.robot, pilot.kinematics)
@@ -161,3 +164,16 @@ def test_a_curve_that_is_flown_in_one_go_takes_as_long_as_its_mission(mission, l
         assert spans[last][1] - spans[first][0] == pytest.approx(
             pilot.serve_seconds(alone), rel=0.06, abs=2.2
         )
+
+
+def test_what_is_cut_off_may_become_part_of_a_mission_with_a_hop():
+    """In the whole line a photo ends each two legs, which are too few for a mission."""
+    corners = [(30.0 * k, 20.0 * (k % 2), 20.0) for k in range(9)]
+    length = dist(*corners[:2])
+    photos, cuts = (tuple(2.0 * length * k for k in numbers) for numbers in (range(5), range(1, 4)))
+    (stroke,) = road(*corners, cuts=cuts, actions=tuple(map(photo, photos))).strokes
+    pieces, pilot = parts_of(stroke), pilot_of(with_kinematics(robot(), timing=STEP, mission=MISSION))
+    spans = paced(pieces, pilot, 1)
+    for first, last in combinations_with_replacement(range(len(pieces)), 2):
+        alone = paced([*joined(pieces[first : last + 1])], pilot, 1)
+        assert spans[last][1] - spans[first][0] >= alone[-1][1] - alone[0][0] - 1e-9

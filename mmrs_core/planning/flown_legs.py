@@ -1,4 +1,4 @@
-"""Where a robot stops along a stroke, and which of its legs are expected to be flown as a mission.
+"""Where a robot stops along a stroke, and how its legs are expected to be flown, as missions or one by one.
 
 A stroke on which the robot looks at one place begins and ends with a stop, so that this does not depend on
 what comes before and after. Of others it is supposed that hops follow each other without a stop.
@@ -7,8 +7,8 @@ what comes before and after. Of others it is supposed that hops follow each othe
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import dist
 
@@ -21,19 +21,21 @@ from mmrs_core.scene.timing import Leg, Push, Rates
 
 
 @dataclass(frozen=True, slots=True)
-class MissionLegs:
-    """Legs of a stroke that are part of missions.
+class FlownLegs:
+    """How the legs of a stroke are expected to be flown.
 
     Attributes:
-        rates: of a mission; None: there is none.
+        mission: rates of a mission; None: there is none.
+        legs: that are part of missions; others are commanded one by one.
         saved: by leg, the seconds that it takes less than from a stop to a stop, as it is passed where it
             ends. Of the last one of a mission less than none: its end is noticed late.
-        gained: seconds that all of them take less than if they were commanded one by one.
+        gained: seconds that all of them take less than if each was commanded alone, from a stop to a stop.
         most: seconds that any part of the stroke takes less so, added up: however it is cut, no more.
     """
 
-    rates: Rates | None = None
-    saved: Mapping[int, float] = field(default_factory=dict)
+    mission: Rates | None = None
+    legs: frozenset[int] = frozenset()
+    saved: Sequence[float] = ()
     gained: float = 0.0
     most: float = 0.0
 
@@ -42,37 +44,46 @@ BESIDE = 2, 2
 """Legs before and after a stroke that may continue it without a stop where nothing is known of them: a
 hop, and a leg of what is done beyond that."""
 
-_NONE = MissionLegs()
+_NONE = FlownLegs()
 
 
-def missions_of(stroke: Stroke, travel: Travel) -> MissionLegs:
-    """Return what of a stroke is flown as missions; where the robot looks at one place, only if quicker."""
+def flown_legs(stroke: Stroke, travel: Travel) -> FlownLegs:
+    """Return how a stroke is flown; where the robot looks at one place, as missions if that is quicker."""
     if travel.uploading is None or len(stroke.points) == 1:
         return _NONE
     speed, stops = commanded_speed(stroke, travel.kinematics), stops_of(stroke)
     mission, alone = travel.kinematics.in_mission(), travel.bounds(speed)[1]
-    rates, halts = mission.rates(speed), halts_at_corners(stroke, travel)
-    saved, gained, most = dict[int, float](), 0.0, 0.0
-    for run, _ in runs_between(halts, BESIDE if stroke.look is None else (0, 0)):
-        legs = list(pairwise(stops[run.start : run.stop + 1]))
-        straight = mission.turning_radius <= 0.0
-        less = [*_saved_on(legs, rates, begins=halts[run.start], keeps_to_legs=straight)]
-        less[-1] -= rates.share * mission.noticing * halts[run.stop]
-        more = [
-            alone.from_stop_to_stop(*leg) - rates.from_stop_to_stop(*leg) + each
-            for leg, each in zip(legs, less, strict=True)
-        ]
-        most += sum(max(0.0, each) for each in more)
-        if stroke.look is None or sum(more) > 0.0:
-            saved |= zip(run, less, strict=True)
-            gained += sum(more)
-    return MissionLegs(rates, saved, gained, most)
+    keeps_to_legs, rates = mission.turning_radius <= 0.0, mission.rates(speed)
+    legs, halts = list(pairwise(stops)), halts_at_corners(stroke, travel)
+    saved = [0.0] * len(legs)
+    for run in _between(halts_at_corners(replace(stroke, look=None), travel)):
+        saved[run] = _saved_on(legs[run], alone, begins=False, keeps_to_legs=keeps_to_legs)
+    seconds = [alone.from_stop_to_stop(*leg) - less for leg, less in zip(legs, saved, strict=True)]
+    flown, quickest = set[int](), list(seconds)
+    for its, _ in runs_between(halts, BESIDE if stroke.look is None else (0, 0)):
+        run = slice(its.start, its.stop)
+        less = [*_saved_on(legs[run], rates, begins=halts[its.start], keeps_to_legs=keeps_to_legs)]
+        less[-1] -= rates.share * mission.noticing * halts[its.stop]
+        uploaded = [rates.from_stop_to_stop(*leg) - each for leg, each in zip(legs[run], less, strict=True)]
+        quickest[run] = map(min, uploaded, seconds[run])
+        if stroke.look is None or sum(uploaded) < sum(seconds[run]):
+            flown.update(its)
+            saved[run], seconds[run] = less, uploaded
+    plain = sum(alone.from_stop_to_stop(*leg) for leg in legs)
+    return FlownLegs(rates, frozenset(flown), saved, plain - sum(seconds), plain - sum(quickest))
+
+
+def _between(halts: Sequence[bool]) -> Iterator[slice]:
+    """Yield the legs between one stop and the next."""
+    stops = [0, *(i for i in range(1, len(halts) - 1) if halts[i]), len(halts) - 1]
+    yield from (slice(*each) for each in pairwise(stops))
 
 
 def _saved_on(legs: Sequence[Leg], rates: Rates, *, begins: bool, keeps_to_legs: bool) -> Iterator[float]:
-    """Yield the seconds that each leg of a mission saves, here and on the next, where it ends without a stop.
+    """Yield the seconds that each of some legs saves, here and on the next, where it ends without a stop.
 
-    A robot that keeps to its legs stops at the end of a mission's first one, and where the path turns.
+    A robot that keeps to its legs stops where the path turns, and where a mission `begins` at the end of the
+    first one.
     """
     before: Passage | None = None
     push: Push | None = None
@@ -85,7 +96,7 @@ def _saved_on(legs: Sequence[Leg], rates: Rates, *, begins: bool, keeps_to_legs:
         else:
             before = None
         push = rates.push(*leg, push)
-        yield saved
+        yield min(saved, rates.from_stop_to_stop(*leg))
 
 
 def halts_at_corners(stroke: Stroke, travel: Travel) -> list[bool]:
