@@ -49,18 +49,18 @@ _NONE = FlownLegs()
 
 def flown_legs(stroke: Stroke, travel: Travel) -> FlownLegs:
     """Return how a stroke is flown; where the robot looks at one place, as missions if that is quicker."""
-    if travel.uploading is None or len(stroke.points) == 1:
+    if travel.corners is None or len(stroke.points) == 1:
         return _NONE
-    speed, stops = commanded_speed(stroke, travel.kinematics), stops_of(stroke)
+    speed, legs = commanded_speed(stroke, travel.kinematics), list(pairwise(stops_of(stroke)))
     mission, alone = travel.kinematics.in_mission(), travel.bounds(speed)[1]
     keeps_to_legs, rates = mission.turning_radius <= 0.0, mission.rates(speed)
-    legs, halts = list(pairwise(stops)), halts_at_corners(stroke, travel)
     saved = [0.0] * len(legs)
     for run in _between(halts_at_corners(replace(stroke, look=None), travel)):
         saved[run] = _saved_on(legs[run], alone, begins=False, keeps_to_legs=keeps_to_legs)
     seconds = [alone.from_stop_to_stop(*leg) - less for leg, less in zip(legs, saved, strict=True)]
-    flown, quickest = set[int](), list(seconds)
-    for its, _ in runs_between(halts, BESIDE if stroke.look is None else (0, 0)):
+    flown, quickest, halts = set[int](), list(seconds), halts_at_corners(stroke, travel)
+    beside = BESIDE if stroke.look is None else (0, 0)
+    for its, _ in runs_between(halts, beside) if travel.uploading is not None else ():
         run = slice(its.start, its.stop)
         less = [*_saved_on(legs[run], rates, begins=halts[its.start], keeps_to_legs=keeps_to_legs)]
         less[-1] -= rates.share * mission.noticing * halts[its.stop]
@@ -102,7 +102,7 @@ def _saved_on(legs: Sequence[Leg], rates: Rates, *, begins: bool, keeps_to_legs:
 def halts_at_corners(stroke: Stroke, travel: Travel) -> list[bool]:
     """Return at which of its places a robot stops for certain, corners that it may not cut included."""
     halts, speed = halts_of(stroke, travel.robot.type), commanded_speed(stroke, travel.kinematics)
-    stops, corners = stops_of(stroke), travel.uploading
+    stops, corners = stops_of(stroke), travel.corners
     for i in range(1, len(halts) - 1):
         if not halts[i] and corners is not None:
             start, corner, end = stops[i - 1 : i + 2]

@@ -106,9 +106,8 @@ class Team:
                 fluid=fluid,
                 corridors=scene.corridors_of(robot),
                 areas=scene.kept_from(robot),
-                uploading=Corners(robot, scene.kept_from(robot), scene.corridors_of(robot))
-                if uploads
-                else None,
+                corners=Corners(robot, scene.kept_from(robot), scene.corridors_of(robot)) if fluid else None,
+                uploads=uploads,
             )
             for robot in scene.robots
         }

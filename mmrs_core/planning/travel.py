@@ -113,7 +113,8 @@ class Travel:
         fluid: bool = True,
         corridors: Sequence[Corridor] = (),
         areas: Iterable[Area] = (),
-        uploading: Corners | None = None,
+        corners: Corners | None = None,
+        uploads: bool = False,
     ) -> None:
         """Make it for a robot.
 
@@ -124,11 +125,13 @@ class Travel:
             fluid: whether it may pass without a stop where nothing is done.
             corridors: that are for it.
             areas: that it keeps away from.
-            uploading: corners that it passes on missions which may be uploaded; None: none are.
+            corners: that it may pass; None: it stops at all of them.
+            uploads: whether missions may be uploaded.
         """
         self.robot, self.space, self.fluid = robot, space, fluid
         self.kinematics = kinematics_of(robot)
-        self.uploading = None if self.kinematics.mission is None else uploading
+        self.corners = None if self.kinematics.mission is None else corners
+        self.uploading = self.corners if uploads else None
         kept_from = tuple(areas)
         self.entries, self.exits = (
             Corridors(corridors, direction, robot, self.kinematics, space, kept_from)

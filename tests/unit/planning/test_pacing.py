@@ -177,3 +177,14 @@ def test_what_is_cut_off_may_become_part_of_a_mission_with_a_hop():
     for first, last in combinations_with_replacement(range(len(pieces)), 2):
         alone = paced([*joined(pieces[first : last + 1])], pilot, 1)
         assert spans[last][1] - spans[first][0] >= alone[-1][1] - alone[0][0] - 1e-9
+
+
+def test_places_on_a_straight_line_are_passed_where_no_missions_are_uploaded():
+    each = with_kinematics(robot(), timing=STEP, mission=MISSION)
+    whole = scene([each], {"a": visit((0.0, 9.0, 20.0))})
+    local = Team(replace(whole, frame=replace(whole.frame, latitude=None, longitude=None))).pilots["r1"]
+    (line,) = road(*((20.0 * k, 0.0, 20.0) for k in range(5))).strokes
+    (bent,) = road(*((20.0 * k, 20.0 * (k % 2), 20.0) for k in range(5))).strokes
+    assert local.serve_seconds(line) < serve_seconds(line, each, each.kinematics) - 3.0
+    assert local.serve_seconds(bent) == pytest.approx(serve_seconds(bent, each, each.kinematics))
+    assert paced(parts_of(line), local)[-1][1] == pytest.approx(local.serve_seconds(line))
