@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf
+from typing import TYPE_CHECKING
 
-from mmrs_core.scene import Plan
+if TYPE_CHECKING:
+    from mmrs_core.scene import Plan
 
 SLICE = 16
 """Steps between two looks at the clock."""
