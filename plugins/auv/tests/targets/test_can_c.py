@@ -11,6 +11,7 @@ from can_hub import Raw, running
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.targets.can_c.target import CAN_C, block, files_of, number
+from ports import free_port
 from vessel_sheets import sheet, sheets, thruster
 
 from auv_vessel.body.devices import pressure_of_depth
@@ -327,8 +328,7 @@ def test_the_program_ends_with_the_bus(program):
 
 
 def test_the_program_waits_for_the_hub_a_while(program):
-    with running() as hub:
-        port = hub.port
+    port = free_port()
     with started(program, port) as drives:
         with pytest.raises(subprocess.TimeoutExpired):
             drives.wait(0.3)
@@ -338,8 +338,7 @@ def test_the_program_waits_for_the_hub_a_while(program):
 
 
 def test_the_program_says_that_there_is_no_hub(program):
-    with running() as hub:
-        port = str(hub.port)
+    port = str(free_port())
     done = subprocess.run([program, "127.0.0.1", port], capture_output=True, timeout=20)
     assert (done.returncode, done.stderr) == (3, f"drives: no hub at 127.0.0.1:{port}\n".encode())
 
