@@ -5,8 +5,8 @@ the path must follow the line of a corridor from its one end to the other; from 
 that of a corridor in the other direction. All along, the robot keeps half its diagonal, the position error
 and the room that it needs to turn from both sides, and from the corridor's heights; where it cuts a corner or
 stops late, so much more. Between tasks, in a diversion, and where it does not come out of the field after its
-last task, it goes where it likes; in the field is where the nearest end of all corridors out is an inner one.
-A sortie on a branch without work follows one line in, and one out.
+last task, it goes where it likes; in the field is where it works, and where the nearest end of all corridors
+out is an inner one. A sortie on a branch without work follows one line in, and one out.
 """
 
 from __future__ import annotations
@@ -195,7 +195,9 @@ class _Walk:
         self.ways, self.gaps, self.caveat = list[_Way](), list[UnknownMove](), ""
         self.round_trips = list[tuple[_Way, _Way]]()
         reachable = sorted(reachable_moves(robot))
-        self.works = any(map(self._works, reachable))
+        works = [move for move in reachable if self._works(move)]
+        self.works = bool(works)
+        self._worked = {move: [path.points[-1] for path in self._paths.get(move, ())] for move in works}
         for move in reachable:
             if move == robot.start or robot.moves[move].is_a(RECHARGE):
                 self._from_home(move)
@@ -227,7 +229,7 @@ class _Walk:
             parts, gaps = self._pieces([*chain[1:], end], ends)
             last = next((part[-1].end for part in reversed(parts) if part), None)
             where = last if parts and last is not None else (ends[-1] if ends else None)
-            if where is not None and not gaps and self._is_away(where) and self._stays(ends, where):
+            if where is not None and not gaps and self._is_away(where) and self._stays(work, where):
                 away = dist(where[:2], self._home[:2])
                 self.caveat = f"it ends {away:.0f} m from its home, so that no exit is asked for"
                 continue
@@ -247,9 +249,11 @@ class _Walk:
     def _is_away(self, place: Position) -> bool:
         return dist(place[:2], self._home[:2]) > _HOME
 
-    def _stays(self, ends: Sequence[Position], where: Position) -> bool:
+    def _stays(self, work: int, where: Position) -> bool:
         """Return whether a robot that ends somewhere has not come out of the field after its last task."""
-        return self._is_inside(where) or any(not self._is_inside(each) for each in ends[-1:])
+        if self._is_inside(where) or any(not self._is_inside(each) for each in self._worked[work][-1:]):
+            return True
+        return any(dist(each[:2], where[:2]) <= _HOME for ends in self._worked.values() for each in ends)
 
     def _is_inside(self, place: Position) -> bool:
         """Return whether the nearest end of all corridors out is an inner one."""

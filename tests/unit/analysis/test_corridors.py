@@ -157,6 +157,16 @@ def test_a_robot_that_ends_in_the_field_needs_no_exit_and_that_is_said():
     assert verdict.caveat == "it ends 80 m from its home, so that no exit is asked for"
 
 
+def test_a_robot_that_ends_where_it_has_worked_needs_no_exit():
+    there = path("out", (10.0, 0.0), (50.0, 0.0), (-50.0, 40.0))
+    aside = go("aside", (-50.0, 40.0, 0.0), task="aside", rule="visit")
+    back = path("back", (-50.0, 40.0))
+    verdict = through(*there, aside, work(), *back)
+    assert verdict.status is Status.SAFE
+    assert verdict.caveat == "it ends 64 m from its home, so that no exit is asked for"
+    assert through(*there[:2], work(), *back).status is Status.VIOLATED
+
+
 def test_a_robot_that_ends_before_the_corridor_comes_out_through_it():
     beside = [*out_and_in()[:4], *path("back", (80.0, 40.0), (2.0, 3.0))]
     assert through(*beside).status is Status.VIOLATED
