@@ -176,7 +176,9 @@ def refuse_undecided(program: Program, robots: Container[str], conditions: Conta
         if transition.condition is not None and transition.condition not in conditions
     ]
     if unknown:
-        raise UnsupportedError(f"{len(unknown)} choices have conditions without a decision", unknown)
+        several = f"{len(unknown)} choices have conditions without a decision"
+        words = several if len(unknown) > 1 else "one choice has a condition without a decision"
+        raise UnsupportedError(words, unknown)
 
 
 def mixed(
