@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import accumulate, pairwise
 from math import ceil, dist, floor
 
+import numpy as np
 import shapely
 
 from mmrs_core.errors import InfeasibleError
@@ -21,15 +22,38 @@ MOST_PASSES = 1_000
 LEFT_OUT = 1e-3
 """Share of a corridor that passes may leave out."""
 
+_DENSE, _OFF = 5.0, 0.1
+"""Metres along a line, and off it, below which a point only makes robots slow; freehand lines have many."""
+
 
 def at_altitude(points: Sequence[Position], up: float | None) -> tuple[Position, ...]:
     """Return points at one height, or at their own where none is given."""
     return tuple(points) if up is None else tuple((east, north, up) for east, north, _ in points)
 
 
-def without_repeats(points: Sequence[Position]) -> tuple[Position, ...]:
-    """Return the polyline without points that only repeat the one before."""
-    return (*points[:1], *(b for a, b in pairwise(points) if dist(a, b) > 1e-6))
+def without_dense(points: Sequence[Position]) -> tuple[Position, ...]:
+    """Return the polyline with fewer points, as drawn but for 0.1 m.
+
+    Only legs of up to 5 m are made of several; points that repeat the one before are left out.
+
+    >>> without_dense([(0.1 * step, 0.0, 0.0) for step in range(101)])
+    ((0.0, 0.0, 0.0), (5.0, 0.0, 0.0), (10.0, 0.0, 0.0))
+    """
+    points = (*points[:1], *(b for a, b in pairwise(points) if dist(a, b) > 1e-6))
+    kept, last = list(points[:1]), 0
+    for end in range(2, len(points)):
+        leg = kept[-1], points[end]
+        if dist(*leg) > _DENSE or _off(leg, points[last + 1 : end]) > _OFF:
+            last = end - 1
+            kept.append(points[last])
+    return (*kept, *points[1:][-1:])
+
+
+def _off(leg: tuple[Position, Position], points: Sequence[Position]) -> float:
+    """Return the largest distance of points from a leg, metres."""
+    along, there = np.subtract(leg[1], leg[0]), np.subtract(points, leg[0])
+    shares = np.clip(there @ along / max(along @ along, 1e-12), 0.0, 1.0)
+    return float(np.linalg.norm(there - shares[:, None] * along, axis=1).max())
 
 
 def length_of(points: Sequence[Position]) -> float:

@@ -10,7 +10,7 @@ from mmrs_core.planning.open_lines import work_along
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, pairs, positions, ring, text
-from mmrs_survey.lines import at_altitude, cuts_between, even_distances, length_of, without_repeats
+from mmrs_survey.lines import at_altitude, cuts_between, even_distances, length_of, without_dense
 from mmrs_survey.names import MEASURE_TASK
 
 RULE = "measure"
@@ -29,7 +29,7 @@ def measure_work(task: Task, robot: Robot, scene: Scene) -> Work:
     action = _action(part, robot)
     if spacing is None or len(points) == 1:
         return _at_points(points, action, robot, scene)
-    lines = [("the line", without_repeats(points))]
+    lines = [("the line", without_dense(points))]
     return work_along(scene, robot, lines, lambda _, line: _along(line, spacing, action), rule=RULE)
 
 

@@ -21,7 +21,7 @@ from mmrs_core.languages.element import Element, is_kind, is_set, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position
 from mmrs_survey.camera import FOCAL_KEY, IMAGE_KEYS, SENSOR_KEYS
-from mmrs_survey.lines import lines_over, without_repeats
+from mmrs_survey.lines import lines_over, without_dense
 from mmrs_survey.names import MEASURE_TASK, ROAD_TASK
 from mmrs_survey.task_checks import devices_for
 
@@ -160,7 +160,7 @@ def _lines(task: Element, models: ModelSet) -> Iterator[tuple[str, BlockedLine]]
 
 def _passes(task: Element, points: Sequence[Position]) -> tuple[tuple[Position, ...], ...]:
     """Return the passes of a road; none where it has but one, which is its line, or cannot be divided."""
-    line = without_repeats(points[::-1] if value(task, "inverted") is True else points)
+    line = without_dense(points[::-1] if value(task, "inverted") is True else points)
     try:
         strip = (number(task, "footprintWidth") or inf) * (1.0 - (number(task, "sideOverlap") or 0.0))
         found = lines_over(line, number(task, "width"), strip)

@@ -12,7 +12,7 @@ from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.planning.turnarounds import turned_around
 from mmrs_core.scene import Robot, Scene, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, positions
-from mmrs_survey.lines import at_altitude, lines_over, without_repeats
+from mmrs_survey.lines import at_altitude, lines_over, without_dense
 from mmrs_survey.names import ROAD_TASK
 from mmrs_survey.spacing import photographed, shots_of
 
@@ -20,7 +20,7 @@ from mmrs_survey.spacing import photographed, shots_of
 def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return one stroke along the line, or several beside each other over its width."""
     part = task.part
-    line = without_repeats(at_altitude(positions(part, "points"), number(part, "altitude")))
+    line = without_dense(at_altitude(positions(part, "points"), number(part, "altitude")))
     if not line:
         raise InfeasibleError("points are missing")
     turned = flag(part, "inverted")

@@ -1,12 +1,12 @@
 from dataclasses import replace
 from itertools import pairwise
-from math import cos, sin
+from math import cos, dist, sin, sqrt
 
 import pytest
 import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from mmrs_survey.lines import cuts_between, even_distances, passes
+from mmrs_survey.lines import cuts_between, even_distances, passes, without_dense
 from mmrs_survey.roads import road_work
 
 from mmrs_core.errors import InfeasibleError
@@ -33,6 +33,44 @@ def test_a_line_without_width_is_followed_once_at_its_altitude(robot, scene, tas
 def test_a_line_without_altitude_keeps_the_heights_of_its_points(robot, scene, task):
     asked = road(task, altitude=None, initialPosition=(-10.0, 0.0, 5.0))
     assert road_work(asked, robot(), scene()).strokes[0].points == LINE
+
+
+def test_a_line_drawn_freehand_is_followed_on_longer_legs(robot, scene, task):
+    drawn = tuple((step / 10, 10.0 * sin(step / 100), 5.0) for step in range(1001))
+    (stroke,) = road_work(road(task, points=drawn), robot(), scene()).strokes
+    assert len(stroke.points) < 40
+    away = shapely.hausdorff_distance(shapely.LineString(stroke.points), shapely.LineString(drawn))
+    assert away <= 0.1 + 1e-9
+
+
+places = st.tuples(*[st.floats(-20.0, 20.0).map(lambda each: round(each, 2))] * 3)
+
+
+@given(st.lists(places, max_size=12), st.integers(1, 12))
+def test_what_is_left_of_a_line_is_within_a_tenth_of_a_metre_of_all_of_it(corners, parts):
+    drawn = [
+        tuple(a + (b - a) * part / parts for a, b in zip(one, two, strict=True))
+        for one, two in pairwise(corners)
+        for part in range(parts)
+    ]
+    drawn += corners[-1:]
+    left = without_dense(drawn)
+    assert set(left) <= set(drawn)
+    assert bool(left) == bool(drawn)
+    for end in (0, -1) if drawn else ():
+        assert dist(left[end], drawn[end]) <= 1e-6
+    legs = [*pairwise(left)] or [(*left, *left)]
+    for point in drawn:
+        assert min(away(point, *leg) for leg in legs) <= 0.1 + 1e-6
+
+
+def away(point, begin, end):
+    """Return the distance of a point from a leg, by Heron's formula where no end is nearest."""
+    a, b, c = dist(begin, end), dist(point, begin), dist(point, end)
+    if a < 1e-9 or b * b >= a * a + c * c or c * c >= a * a + b * b:
+        return min(b, c)
+    half = (a + b + c) / 2
+    return 2 / a * sqrt(max(0.0, half * (half - a) * (half - b) * (half - c)))
 
 
 def test_an_inverted_line_is_followed_from_its_end(robot, scene, task):
