@@ -151,12 +151,19 @@ class Material:
             self._strokes[begin, end] = joined(parts)
         return self._strokes[begin, end]
 
+    def numbers(self, index: int) -> range:
+        """Return the numbers of a portion's strokes among those of all portions."""
+        return range(self._counts[index], self._counts[index + 1])
+
+    @cached_property
+    def _counts(self) -> list[int]:
+        return [0, *accumulate(map(len, self.portions))]
+
     def near(self, metres: float) -> list[list[int]]:
-        """Return, by portion, itself and those that lie within some metres of it, heights aside."""
+        """Return, by number of a stroke, it and those that lie within some metres of it, heights aside."""
         if metres not in self._near:
-            # a line of one point is none to shapely
-            lines = [[(*each.points, each.points[-1]) for each in portion] for portion in self.portions]
-            shapes = [shapely.MultiLineString([[at[:2] for at in line] for line in each]) for each in lines]
+            lines = [[at[:2] for at in each.points] for portion in self.portions for each in portion]
+            shapes = [shapely.LineString(each) if len(each) > 1 else shapely.Point(each) for each in lines]
             found = self._near[metres] = [[] for _ in shapes]
             for one, two in shapely.STRtree(shapes).query(shapes, "dwithin", metres).T.tolist():
                 found[one].append(two)

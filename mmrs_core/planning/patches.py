@@ -36,14 +36,14 @@ def in_fewer_patches(sharing: Sharing, ways: Iterable[RowFilling], width: float)
         ways: to share the same work out among the same robots.
         width: of the strip that a stroke covers, metres.
     """
-    best, parted = sharing, _parted(sharing.shares, width)
+    best, parted = sharing, number_of_parted(sharing.shares, width)
     latest = sharing.back * (1.0 + _WORTH)
     for each in ways if parted else ():
         found = earliest(each, latest)
         for step in range(1, _STEPS + 1):
             if found is None or found.back > latest:
                 break
-            left = _parted(found.shares, width)
+            left = number_of_parted(found.shares, width)
             if (left, found.back) < (parted, best.back) and _is_even(found):
                 best, parted = found, left
             shares = each.shares(sharing.back + step / _STEPS * (latest - sharing.back)) if left else ()
@@ -51,21 +51,26 @@ def in_fewer_patches(sharing: Sharing, ways: Iterable[RowFilling], width: float)
     return best
 
 
-def _parted(shares: Sequence[Share], width: float) -> int:
-    """Return how many shares are in more than one patch."""
-    return sum(_reached(each, _TOUCHING * width) <= each.end - each.run.begin for each in shares)
+def number_of_parted(shares: Sequence[Share], width: float) -> int:
+    """Return how many shares are in more than one patch.
+
+    Args:
+        shares: of a work.
+        width: of the strip that a stroke covers, metres.
+    """
+    return sum(not _is_one(each, _TOUCHING * width) for each in shares)
 
 
-def _reached(share: Share, touching: float) -> int:
-    """Return how many portions of a share are in one patch with its first."""
-    near, border, reached = share.run.material.near(touching), [share.run.begin], 0
-    left = set(range(share.run.begin + 1, share.end + 1))
+def _is_one(share: Share, touching: float) -> bool:
+    """Return whether all strokes of a share are in one patch with its first."""
+    material = share.run.material
+    first, *rest = range(material.numbers(share.run.begin).start, material.numbers(share.end).stop)
+    near, border, left = material.near(touching), [first], set(rest)
     while border:
         more = left.intersection(near[border.pop()])
         left -= more
         border += more
-        reached += 1
-    return reached
+    return not left
 
 
 def _is_even(sharing: Sharing) -> bool:

@@ -24,7 +24,7 @@ JUSTIFIED_UNKNOWNS = {
 }
 
 LONGEST = {
-    "Carbon dioxide near L'Aquila": 1457.0,
+    "Carbon dioxide near L'Aquila": 1461.0,
     "Course": 143.0,
     "Dam inspection": 3491.0,
     "Hot spots behind a ridge": 667.5,

@@ -4,13 +4,15 @@ from dataclasses import replace
 from itertools import pairwise
 from math import cos, dist, pi, sin
 from random import Random
+from types import SimpleNamespace
 
 import pytest
 import shapely
 from plain_scenes import DRONE, field_work, robot, scene, with_kinematics
 
 from mmrs_core.planning import schedule
-from mmrs_core.planning.patches import in_rows
+from mmrs_core.planning.materials import Material
+from mmrs_core.planning.patches import in_rows, number_of_parted
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Stroke
 
@@ -44,6 +46,26 @@ def test_shares_of_an_area_are_in_one_patch_each_where_that_takes_little_longer(
     assert max(map(patches, soonest.robots)) > 1
     assert max(map(patches, found.robots)) == 1
     assert found.makespan <= 1.02 * soonest.makespan
+
+
+def share(*portions):
+    """Return a share of all portions, each of some strokes, given by the places that they lead through."""
+    strokes = [tuple(Stroke(tuple((*at, 40.0) for at in line)) for line in each) for each in portions]
+    material = Material("a", "field", tuple(strokes), ((),) * 3, None, (None,) * len(strokes), whole=False)
+    return SimpleNamespace(run=SimpleNamespace(material=material, begin=0), end=len(strokes) - 1)
+
+
+def test_strokes_that_are_apart_are_two_patches_though_they_are_one_portion():
+    row, beside, away = [(0, 0), (90, 0)], [(0, 20), (90, 20)], [(500, 0), (590, 0)]
+    assert number_of_parted([share([row], [beside]), share([row, beside])], WIDTH) == 0
+    assert (
+        number_of_parted([share([row], [away]), share([row, away]), share([row, away], [beside])], WIDTH) == 3
+    )
+
+
+def test_a_place_for_one_photo_is_in_a_patch_with_those_beside_it():
+    assert number_of_parted([share([[(0, 0)]], [[(12, 0)]], [[(30, 0), (60, 0)]])], WIDTH) == 0
+    assert number_of_parted([share([[(0, 0)]], [[(30, 0), (60, 0)]])], WIDTH) == 1
 
 
 @pytest.mark.parametrize("corners", [3, 9, 40])
