@@ -29,6 +29,7 @@ from mmrs_core.scene import (
     Recover,
     Scene,
     Serve,
+    Signal,
     Step,
     Transit,
     distinct_works,
@@ -292,8 +293,10 @@ class Traffic:
         return self._timelines[name]
 
     def overdrawn_in(self, plan: Plan) -> set[str]:
-        """Return the robots that wait longer in another plan and then take more than a charge allows."""
-        return set() if self._charges is None else self._charges.short(plan, self._changed_in(plan))
+        """Return the robots that may wait longer in another plan and then take more than a charge allows."""
+        if self._charges is None:
+            return set()
+        return self._charges.short(plan, _with_receivers(plan, self._changed_in(plan)))
 
     def left_of_charges(self) -> dict[str, list[float]]:
         """Return, by robot, the seconds left of a charge after each flight; empty where none count."""
@@ -437,6 +440,20 @@ class Traffic:
                 step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
             )
             yield delayed_step, stop.relation is HomeRelation.HOME
+
+
+def _with_receivers(plan: Plan, names: Collection[str]) -> set[str]:
+    """Return robots and those that wait for their signals, or for signals of these, and so on."""
+    receivers = {
+        each.robot: {name for step in each.steps if isinstance(step, Signal) for name in step.receivers}
+        for each in plan.robots
+    }
+    found, pending = set(names), [*names]
+    while pending:
+        more = receivers[pending.pop()] - found
+        found |= more
+        pending += more
+    return found
 
 
 def _least_beyond(begins: Floats, ends: Floats) -> float:
