@@ -294,17 +294,16 @@ class Traffic:
 
     def overdrawn_in(self, plan: Plan) -> set[str]:
         """Return the robots that may wait longer in another plan and then take more than a charge allows."""
-        if self._charges is None:
-            return set()
-        return self._charges.short(plan, _with_receivers(plan, self._changed_in(plan)))
+        return set() if self._charges is None else self._charges.short(plan, self._changed_in(plan))
 
     def left_of_charges(self) -> dict[str, list[float]]:
         """Return, by robot, the seconds left of a charge after each flight; empty where none count."""
         return {} if self._charges is None else self._charges.left(self.plan)
 
     def _changed_in(self, plan: Plan) -> frozenset[str]:
+        """Return the robots that may do something at other times than before, if only at the latest."""
         before = {each.robot: each.steps for each in self.plan.robots}
-        return frozenset(each.robot for each in plan.robots if each.steps != before[each.robot])
+        return _with_receivers(plan, {each.robot for each in plan.robots if each.steps != before[each.robot]})
 
     def later_starts(self) -> dict[str, float]:
         """Return when robots must leave home at the earliest to keep apart; empty if that does not help.
@@ -442,7 +441,7 @@ class Traffic:
             yield delayed_step, stop.relation is HomeRelation.HOME
 
 
-def _with_receivers(plan: Plan, names: Collection[str]) -> set[str]:
+def _with_receivers(plan: Plan, names: Collection[str]) -> frozenset[str]:
     """Return robots and those that wait for their signals, or for signals of these, and so on."""
     receivers = {
         each.robot: {name for step in each.steps if isinstance(step, Signal) for name in step.receivers}
@@ -453,7 +452,7 @@ def _with_receivers(plan: Plan, names: Collection[str]) -> set[str]:
         more = receivers[pending.pop()] - found
         found |= more
         pending += more
-    return found
+    return frozenset(found)
 
 
 def _least_beyond(begins: Floats, ends: Floats) -> float:
