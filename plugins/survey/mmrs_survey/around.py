@@ -17,6 +17,7 @@ from mmrs_core.planning.open_lines import work_along
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Look, Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, ring, text
+from mmrs_survey.lines import without_dense
 from mmrs_survey.names import ORBIT_TASK, PERIMETER_TASK
 from mmrs_survey.spacing import photographed, shots_of
 
@@ -73,7 +74,10 @@ def _layers(part: Part, lowest: float, strip: float | None) -> list[float]:
 
 
 def _path_along(part: Part, distance: float, start: Point) -> list[Point]:
-    """Return the closed path at a distance outside of a border, from its corner nearest to the start."""
+    """Return the closed path at a distance outside of a border, from its corner nearest to the start.
+
+    Corners that are dense, as on a border drawn freehand, are left out.
+    """
     grown = shapely.buffer(polygon(ring(part, "shell")), distance, join_style="mitre", mitre_limit=MITRE)
     found = parts(grown)
     if not found:
@@ -82,7 +86,7 @@ def _path_along(part: Part, distance: float, start: Point) -> list[Point]:
     if found[0].exterior.is_ccw == flag(part, "clockwise"):
         corners = corners[::-1]
     first = min(range(len(corners)), key=lambda index: dist(corners[index], start))
-    return [*corners[first:], *corners[: first + 1]]
+    return without_dense([*corners[first:], *corners[: first + 1]])
 
 
 def _beside(line: tuple[Position, ...], far: float) -> Position:

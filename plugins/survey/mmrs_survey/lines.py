@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import accumulate, pairwise
 from math import ceil, dist, floor
+from typing import TypeVar
 
 import numpy as np
 import shapely
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.limits import MOST
-from mmrs_core.scene import Position
+from mmrs_core.scene import Point, Position
+
+_Place = TypeVar("_Place", Point, Position)
 
 LONGEST_SHARE = 50.0
 """Metres after which a line without actions may be split."""
@@ -31,25 +34,26 @@ def at_altitude(points: Sequence[Position], up: float | None) -> tuple[Position,
     return tuple(points) if up is None else tuple((east, north, up) for east, north, _ in points)
 
 
-def without_dense(points: Sequence[Position]) -> tuple[Position, ...]:
+def without_dense(points: Sequence[_Place]) -> list[_Place]:
     """Return the polyline with fewer points, as drawn but for 0.1 m.
 
     Only legs of up to 5 m are made of several; points that repeat the one before are left out.
 
     >>> without_dense([(0.1 * step, 0.0, 0.0) for step in range(101)])
-    ((0.0, 0.0, 0.0), (5.0, 0.0, 0.0), (10.0, 0.0, 0.0))
+    [(0.0, 0.0, 0.0), (5.0, 0.0, 0.0), (10.0, 0.0, 0.0)]
     """
-    points = (*points[:1], *(b for a, b in pairwise(points) if dist(a, b) > 1e-6))
-    kept, last = list(points[:1]), 0
-    for end in range(2, len(points)):
-        leg = kept[-1], points[end]
-        if dist(*leg) > _DENSE or _off(leg, points[last + 1 : end]) > _OFF:
+    distinct = list(points[:1])
+    distinct += [b for a, b in pairwise(points) if dist(a, b) > 1e-6]
+    kept, last = distinct[:1], 0
+    for end in range(2, len(distinct)):
+        leg = kept[-1], distinct[end]
+        if dist(*leg) > _DENSE or _off(leg, distinct[last + 1 : end]) > _OFF:
             last = end - 1
-            kept.append(points[last])
-    return (*kept, *points[1:][-1:])
+            kept.append(distinct[last])
+    return kept + distinct[1:][-1:]
 
 
-def _off(leg: tuple[Position, Position], points: Sequence[Position]) -> float:
+def _off(leg: tuple[_Place, _Place], points: Sequence[_Place]) -> float:
     """Return the largest distance of points from a leg, metres."""
     along, there = np.subtract(leg[1], leg[0]), np.subtract(points, leg[0])
     shares = np.clip(there @ along / max(along @ along, 1e-12), 0.0, 1.0)

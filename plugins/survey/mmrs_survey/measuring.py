@@ -29,7 +29,7 @@ def measure_work(task: Task, robot: Robot, scene: Scene) -> Work:
     action = _action(part, robot)
     if spacing is None or len(points) == 1:
         return _at_points(points, action, robot, scene)
-    lines = [("the line", without_dense(points))]
+    lines = [("the line", tuple(without_dense(points)))]
     return work_along(scene, robot, lines, lambda _, line: _along(line, spacing, action), rule=RULE)
 
 

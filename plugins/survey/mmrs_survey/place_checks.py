@@ -160,7 +160,7 @@ def _lines(task: Element, models: ModelSet) -> Iterator[tuple[str, BlockedLine]]
 
 def _passes(task: Element, points: Sequence[Position]) -> tuple[tuple[Position, ...], ...]:
     """Return the passes of a road; none where it has but one, which is its line, or cannot be divided."""
-    line = without_dense(points[::-1] if value(task, "inverted") is True else points)
+    line = tuple(without_dense(points[::-1] if value(task, "inverted") is True else points))
     try:
         strip = (number(task, "footprintWidth") or inf) * (1.0 - (number(task, "sideOverlap") or 0.0))
         found = lines_over(line, number(task, "width"), strip)

@@ -20,7 +20,7 @@ from mmrs_survey.spacing import photographed, shots_of
 def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return one stroke along the line, or several beside each other over its width."""
     part = task.part
-    line = without_dense(at_altitude(positions(part, "points"), number(part, "altitude")))
+    line = tuple(without_dense(at_altitude(positions(part, "points"), number(part, "altitude"))))
     if not line:
         raise InfeasibleError("points are missing")
     turned = flag(part, "inverted")

@@ -1,4 +1,5 @@
-from math import dist
+from itertools import pairwise
+from math import cos, dist, pi, sin
 
 import pytest
 import shapely
@@ -37,6 +38,17 @@ def test_a_perimeter_goes_around_at_its_distance_and_faces_each_side(robot, scen
         assert line.distance(area) == 8.0
         assert view.crosses(area)
         assert stroke.look.at[2] == 10.0
+
+
+def test_a_border_drawn_freehand_has_sides_of_some_metres(robot, scene, task):
+    turns = [2 * pi * step / 400 for step in range(400)]
+    shell = tuple(((30 + 2 * sin(7 * a)) * cos(a), (30 + 2 * sin(7 * a)) * sin(a), 0.0) for a in turns)
+    strokes = perimeter_work(perimeter(task, shell=shell, faceBorder=False), robot(), scene()).strokes
+    path = shapely.Polygon([each.points[0][:2] for each in strokes])
+    drawn = shapely.Polygon([point[:2] for point in shell]).buffer(8.0, join_style="mitre", mitre_limit=2.0)
+    assert len(strokes) < 100
+    assert all(one.points[-1] == two.points[0] for one, two in pairwise((*strokes, strokes[0])))
+    assert shapely.hausdorff_distance(path.exterior, drawn.exterior) <= 0.1 + 1e-9
 
 
 def test_a_perimeter_inside_turned_round_faces_the_border_too(robot, scene, task):
