@@ -18,9 +18,9 @@ from mmrs_core.errors import PluginError
 _HELP = "Plan, verify and run missions of multi-robot teams."
 _EPILOG = (
     "Exit codes: 0 success, 1 invalid model or failed mission, 2 usage error, 3 file not readable or "
-    "writable, "
-    "4 no feasible plan, 5 link or robot lost, 130 interrupted."
+    "writable, 4 no feasible plan, 5 link or robot lost, 130 interrupted."
 )
+_MORE = "'mmrs --help' lists exit codes and global options."
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def _generating(called: str | None) -> typer.Typer:
     command = next(
         each for each in CORE_COMMANDS if each.name == ("explain" if called == "explain" else "generate")
     )
-    app.command(command.name)(_imported(command))
+    app.command(command.name, epilog=_MORE)(_imported(command))
     if called == "explain":
         app.callback()(_nothing)
     return app
@@ -83,8 +83,11 @@ def _add_commands(app: typer.Typer, commands: Iterable[Command], called: str | N
 def _add(app: typer.Typer, command: Command, entry: Any) -> None:
     """Add a command by what its entry names: an application, or a function that typer understands."""
     if not isinstance(entry, typer.Typer):
-        app.command(command.name)(entry)
-    elif entry.registered_callback or len(entry.registered_commands) != 1:
+        app.command(command.name, epilog=_MORE)(entry)
+        return
+    for each in entry.registered_commands:
+        each.epilog = _MORE
+    if entry.registered_callback or len(entry.registered_commands) != 1:
         app.add_typer(entry, name=command.name)
     else:
         only = entry.registered_commands[0]

@@ -53,7 +53,9 @@ Connect = Annotated[
 Config = Annotated[
     Path | None, typer.Option("--config", metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'.")
 ]
-Run = Annotated[str, typer.Option("--run", metavar="NAME", help="Run name.")]
+Run = Annotated[
+    str, typer.Option("--run", metavar="NAME", help="Run name; the same in all processes of a run.")
+]
 
 _NAME = re.compile(r"(?!-)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
@@ -81,7 +83,12 @@ def keys(
     ],
     hosts: Annotated[
         list[str] | None,
-        typer.Option("--host", metavar="HOST", help="Host name or address of the robots. Repeatable."),
+        typer.Option(
+            "--host",
+            metavar="HOST",
+            help="Host name or address at which robots are reached; give all. Default: this machine only. "
+            "Repeatable.",
+        ),
     ] = None,
     days: Annotated[
         int, typer.Option("--days", metavar="DAYS", min=1, max=36_500, help="Validity in days.")
@@ -91,9 +98,10 @@ def keys(
     """Create certificates and bus configurations.
 
     With a certificate, a robot can set and acknowledge only its own slots. Copy DIR/NAME to the machine of
-    robot NAME and pass its bus.json5 to the controller as --bus-config. DIR/observer is for monitoring. Keep
-    DIR/authority.key.pem private. To add a robot, or to replace a revoked certificate or a missing folder,
-    run the command again with all robots and copy the folders again; existing certificates are kept.
+    robot NAME and pass its bus.json5 to 'mmrs run' or the controller as --bus-config. DIR/observer is for
+    monitoring. Keep DIR/authority.key.pem private. To add a robot, or to replace a revoked certificate or a
+    missing folder, run the command again with all robots and copy the folders again; existing certificates
+    are kept.
 
     Example: mmrs bus keys keys --robot Drone1 --robot Drone2 --host 10.0.0.1 --host 10.0.0.2
     """
@@ -138,7 +146,7 @@ def gateway(
     robot: Annotated[
         str,
         typer.Option(
-            "--robot", metavar="NAME", help="Robot that the program represents.", autocompletion=robot_names
+            "--robot", metavar="NAME", help="Robot that the program controls.", autocompletion=robot_names
         ),
     ],
     listen: Listen = None,
@@ -151,18 +159,19 @@ def gateway(
             metavar="PORT",
             min=0,
             max=65_535,
-            help="Local port for the program; 0 picks a free port.",
+            help="TCP port on 127.0.0.1 for the program; 0 picks a free port.",
         ),
     ] = 0,
     run: Run = "run-0",
     log: Annotated[
-        Path, typer.Option("--log", metavar="DIR", help="Folder for the slots' journal and gateway.json.")
+        Path,
+        typer.Option("--log", metavar="DIR", help="Folder for gateway.json and the record of slot changes."),
     ] = Path("logs"),
 ) -> int:
     """Connect a program without Zenoh as one robot.
 
     The program, in any language, exchanges JSON lines over TCP; it reads port and token from
-    DIR/gateway.json. See the page "bus" of the documentation for a session. If the program or the gateway
+    gateway.json in the folder of --log. docs/how-to/bus.md shows what they say. If the program or the gateway
     ends early, the other robots report the robot as lost. Runs until interrupted.
 
     Example: mmrs bus gateway survey/behaviour.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
@@ -195,13 +204,16 @@ def gateway(
 
 @app.command("state")
 def state(
-    mission: Annotated[str, typer.Argument(metavar="MISSION", help="Name of the mission.")],
+    mission: Annotated[
+        str, typer.Argument(metavar="MISSION", help="Name of the mission: the attribute 'name' of its model.")
+    ],
     listen: Listen = None,
     connect: Connect = None,
     config: Config = None,
     run: Run = "run-0",
     robots: Annotated[
-        list[str] | None, typer.Option("--robot", metavar="NAME", help="Robot to query. Repeatable.")
+        list[str] | None,
+        typer.Option("--robot", metavar="NAME", help="Robot that must answer. Default: any. Repeatable."),
     ] = None,
     seconds: Annotated[
         float, typer.Option("--seconds", metavar="SECONDS", min=0.1, help="Seconds to wait for answers.")
@@ -210,7 +222,7 @@ def state(
 ) -> int:
     """Show the slots of all reachable robots.
 
-    Exit codes: 0 every robot queried has answered, 5 one has not.
+    Exit codes: 0 all robots named by --robot, or at least one robot, have answered, 5 otherwise.
 
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """

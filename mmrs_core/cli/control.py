@@ -22,7 +22,7 @@ def control(
     order: Annotated[
         str,
         typer.Argument(
-            metavar="ORDER",
+            metavar="COMMAND",
             help="Command: hold, resume, return, land, stop, answer, battery-changed or status.",
             autocompletion=one_of(*ORDERS),
         ),
@@ -39,12 +39,18 @@ def control(
         "logs"
     ),
     question: Annotated[
-        str, typer.Option("--question", metavar="NAME", help="With answer: the question.")
+        str,
+        typer.Option(
+            "--question", metavar="NAME", help="With answer: the question, NAME of the condition answer:NAME."
+        ),
     ] = "",
     says: Annotated[
         str,
         typer.Option(
-            "--says", metavar="yes|no", help="With answer: the answer.", autocompletion=one_of("yes", "no")
+            "--says",
+            metavar="yes|no",
+            help="With answer: the reply to the question.",
+            autocompletion=one_of("yes", "no"),
         ),
     ] = "",
     seconds: Annotated[
@@ -57,13 +63,14 @@ def control(
 ) -> int:
     """Send a command to running robots.
 
-    Prints which robots have executed it. hold: stop moving and wait. resume: continue after a hold or a
+    Prints which robots have confirmed it. hold: stop moving and wait. resume: continue after a hold or a
     battery change. return: abort the program, retrace the path and return home. land: abort the program and
     land. stop: abort the program with the --on-stop response of 'mmrs run'. answer: answer the question of a
-    Choice. battery-changed: confirm that the battery was changed for a full one. status: print the state of
-    each robot.
+    Choice. battery-changed: confirm that a full battery is in, where the vehicle does not report it; after a
+    low battery, then resume. status: print the state of each robot.
 
-    Example: mmrs control hold Drone1 --log logs
+    Examples: mmrs control hold Drone1 --log logs;
+    mmrs control answer --question clear --says yes
     """
     _check(order, question, says)
     replies = []

@@ -27,7 +27,7 @@ def explain(
         str,
         typer.Argument(
             metavar="FILE:LINE",
-            help="Generated line; with --robot, --move or --task, a folder of generated files.",
+            help="Generated line; with --robot, --move or --task, the folder of generated files.",
         ),
     ] = ".",
     robot: Annotated[

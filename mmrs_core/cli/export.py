@@ -34,7 +34,8 @@ def export(
         Path,
         typer.Argument(
             metavar="PROJECT|BEHAVIOUR|LOGS",
-            help="Folder of the project, its mission file, a behaviour file, or the folder of its logs.",
+            help="Folder of the project, its mission file, a behaviour file, or a folder of logs in or "
+            "below the folder of their behaviour.xmi.",
         ),
     ],
     to: Annotated[
@@ -42,14 +43,17 @@ def export(
         typer.Option(
             "--format",
             metavar="NAME",
-            help="File format, such as geojson or kml. Default: by the suffix of -o FILE.",
+            help="kml, kmz, geojson, gpx or another installed format. Default: by the suffix of -o FILE.",
             autocompletion=exporter_names,
         ),
     ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="Output file. Default: export.FORMAT next to the input."
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Output file. Default: export.FORMAT in the folder of the input.",
         ),
     ] = None,
     only: Annotated[
@@ -60,14 +64,15 @@ def export(
     ] = None,
     logs: Annotated[
         list[Path] | None,
-        typer.Option("--logs", metavar="DIR", help="Logs of a run of the behaviour. Repeatable."),
+        typer.Option("--logs", metavar="DIR", help="Folder with logs of a run of the behaviour. Repeatable."),
     ] = None,
     start: Annotated[
         str | None,
         typer.Option(
             "--start",
             metavar="TIME",
-            help="Date and time of day of the start, such as 2026-05-01T09:00Z. Default: that of the logs.",
+            help="Date, time and time zone of the start, such as 2026-05-01T09:00Z. Default: that of the "
+            "logs; without logs, none.",
         ),
     ] = None,
     context: Context = None,

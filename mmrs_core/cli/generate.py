@@ -38,12 +38,13 @@ def generate(
         typer.Option(
             "--target",
             metavar="NAME",
-            help="Target to generate code for. See --list-targets.",
+            help="Target to generate code for; see --list-targets. Required to generate.",
             autocompletion=target_names,
         ),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Output folder.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Output folder. Required to generate."),
     ] = None,
     robots: Robots = None,
     context: Context = None,
@@ -72,9 +73,9 @@ def generate(
 ) -> int:
     """Generate controller code for every robot.
 
-    'mmrs-gen explain FILE:LINE' traces a generated line to its move.
+    'mmrs-gen' is the same command. 'mmrs explain FILE:LINE' traces a generated line to its move.
 
-    Example: mmrs-gen field --target mavlink-python -o code
+    Example: mmrs generate field --target mavlink-python -o code
     """
     session = Session(settings_of(call))
     if list_targets:

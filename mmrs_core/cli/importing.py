@@ -73,13 +73,19 @@ def import_drawings(
     altitude: Annotated[
         float,
         typer.Option(
-            "--altitude", metavar="M", min=0.0, help="Height of tasks drawn without one, for flying robots."
+            "--altitude",
+            metavar="M",
+            min=0.0,
+            help="Height above the origin of tasks drawn without one, for flying robots.",
         ),
     ] = ALTITUDE,
     simplify: Annotated[
         float | None,
         typer.Option(
-            "--simplify", metavar="M", min=0.0, help="Drop positions that are off the line by less than this."
+            "--simplify",
+            metavar="M",
+            min=0.0,
+            help="Drop positions that are less than M metres off the line. Default: none.",
         ),
     ] = None,
     dry_run: Annotated[

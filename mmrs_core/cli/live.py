@@ -33,14 +33,20 @@ def run(
     call: typer.Context,
     behaviour: Behaviour,
     log: Annotated[
-        Path, typer.Option("--log", metavar="DIR", help="Folder for logs and black boxes.")
+        Path,
+        typer.Option(
+            "--log",
+            metavar="DIR",
+            help="Folder for step logs and black boxes (recorded telemetry and decisions).",
+        ),
     ] = Path("logs"),
     backend: Annotated[
         _Texts,
         typer.Option(
             "--backend",
             metavar="[ROBOT=]NAME",
-            help="Backend of all robots or one. Default: the default backend of a plug-in. Repeatable.",
+            help="Interface to the vehicles, for all robots or one, by a name that 'mmrs plugin list' gives "
+            "under vehicles. Default: the one that an installed plug-in declares. Repeatable.",
             autocompletion=backend_names,
         ),
     ] = None,
@@ -49,8 +55,8 @@ def run(
         typer.Option(
             "--connect",
             metavar="[ROBOT=]URL[@SYSTEM]",
-            help="Connection URL of a robot, such as udpin:127.0.0.1:14550 or /dev/ttyUSB0,57600@3. Robots "
-            "may share one. Repeatable.",
+            help="Connection URL of a robot, such as udpin:127.0.0.1:14550, or /dev/ttyUSB0,57600@3 for the "
+            "vehicle with system id 3 on a shared link. Repeatable.",
         ),
     ] = None,
     only: Annotated[
@@ -61,12 +67,16 @@ def run(
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Resume the run logged in --log.")] = False,
     name: Annotated[
-        str, typer.Option("--run", metavar="NAME", help="Run name, recorded in the logs.")
+        str, typer.Option("--run", metavar="NAME", help="Run name; the same in all processes of a run.")
     ] = "run-0",
     speedup: Annotated[
         float,
         typer.Option(
-            "--speedup", metavar="FACTOR", min=0.01, max=1000.0, help="Time factor of simulated vehicles."
+            "--speedup",
+            metavar="FACTOR",
+            min=0.01,
+            max=1000.0,
+            help="Simulated seconds per real second, as given to the simulated vehicles.",
         ),
     ] = 1.0,
     on_stop: Annotated[
@@ -74,7 +84,7 @@ def run(
         typer.Option(
             "--on-stop",
             metavar="hold|return|land",
-            help="Behaviour on interrupt.",
+            help="Response of robots to an interrupt and to 'mmrs control stop'.",
             autocompletion=one_of(*ON_STOP),
         ),
     ] = "hold",
@@ -84,14 +94,16 @@ def run(
             "--battery-patience",
             min=0.0,
             metavar="SECONDS",
-            help="Timeout for a battery change ('mmrs control resume') once no other robot is active.",
+            help="How long to wait for 'mmrs control resume' after a battery change once no other robot is "
+            "active; 0 ends the run.",
         ),
     ] = 0.0,
     bus: Annotated[
         bool,
         typer.Option(
             "--bus",
-            help="Synchronise slots with other processes over Zenoh. Without endpoints: on this machine.",
+            help="Synchronise slots (flags that robots wait for) with other processes over Zenoh; on this "
+            "machine only, unless --bus-listen or --bus-connect is given.",
         ),
     ] = False,
     bus_listen: Annotated[
@@ -115,7 +127,12 @@ def run(
         typer.Option("--bus-config", metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'."),
     ] = None,
     sync: Annotated[
-        bool, typer.Option("--sync", help="Start at one instant, once the robots of all processes are ready.")
+        bool,
+        typer.Option(
+            "--sync",
+            help="Wait until the robots of all processes on the bus are ready, then start all at one "
+            "instant.",
+        ),
     ] = False,
     sync_patience: Annotated[
         float,
@@ -127,12 +144,22 @@ def run(
         ),
     ] = 300.0,
     signing_key: Annotated[
-        Path | None, typer.Option("--signing-key", metavar="FILE", help="Signing key file for vehicle links.")
+        Path | None,
+        typer.Option(
+            "--signing-key",
+            metavar="FILE",
+            help="File of 32 bytes that only you may read: signs messages to vehicles, and refuses others.",
+        ),
     ] = None,
     inject: Annotated[
         _Texts,
         typer.Option(
-            "--inject", metavar="FAULTS", help="Faults to inject, e.g. Drone1:cut@60+20. Repeatable."
+            "--inject",
+            metavar="FAULTS",
+            help="Faults to inject, for all robots or one: loss, duplicate, corrupt or delay, e.g. "
+            "loss=0.15; cut, cut-in, cut-out, ground-cut, freeze, disk-full, clock-jump or gps-lost, e.g. "
+            "Drone1:cut@60+20 from 60 s after the start for 20 s; with --bus, also bus-loss, bus-duplicate, "
+            "bus-delay and bus-cut. Repeatable.",
         ),
     ] = None,
     assume: Assume = None,

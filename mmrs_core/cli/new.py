@@ -59,22 +59,25 @@ def new(
         typer.Option(
             "--at",
             metavar="LAT,LON",
-            help="Home of the first robot: decimal degrees, degrees and minutes, a geo: address or a link of "
-            "a map program.",
+            help="Home of the first robot: decimal degrees, degrees and minutes, a geo: address or a link "
+            "of a map program.",
         ),
     ] = None,
     robot: _Robots = None,
     robots: _Several = None,
     task: _Tasks = None,
     listed: Annotated[
-        bool, typer.Option("--list", help="List the robot types, and the task types with who can do them.")
+        bool,
+        typer.Option(
+            "--list", help="List the robot types, and the task types with the robot types that can do them."
+        ),
     ] = False,
     empty: Annotated[
         bool, typer.Option("--empty", help="Write a skeleton with comments, without robots and tasks.")
     ] = False,
     json: Json = False,
 ) -> int:
-    """Make a new mission that can be planned at once.
+    """Make a new mission that is ready to plan.
 
     Asks for what the options leave open, if it runs in a terminal. Robots begin in a row to the east, with
     tasks of a sensible size beside them; move these in the files, or draw your own areas and add them with

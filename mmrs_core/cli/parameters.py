@@ -20,11 +20,19 @@ Behaviour = Annotated[
 ]
 Context = Annotated[
     Path | None,
-    typer.Option("--context", metavar="FILE", help="Context. Default: context.xmi next to the input."),
+    typer.Option(
+        "--context",
+        metavar="FILE",
+        help="Context model: obstacles, areas and wind. Default: context.xmi in the folder of the input.",
+    ),
 ]
 Robots = Annotated[
     list[Path] | None,
-    typer.Option("--robots", metavar="FILE...", help="Robot types. Default: robots/*.xmi next to the input."),
+    typer.Option(
+        "--robots",
+        metavar="FILE...",
+        help="Robot type files, or a folder of them. Default: robots/*.xmi in the folder of the input.",
+    ),
 ]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Planner random seed.")]
 LONGEST_SEARCH = 1e6
@@ -37,7 +45,8 @@ TimeLimit = Annotated[
         metavar="SECONDS",
         min=0.0,
         max=LONGEST_SEARCH,
-        help="Search for a better plan for SECONDS. Default: a number of steps, the same plan each time.",
+        help="Search time for a better plan. Default: a fixed number of steps, which gives the same plan "
+        "each time.",
     ),
 ]
 Explain = Annotated[
@@ -53,7 +62,11 @@ Duration = Annotated[
 ]
 Assume = Annotated[
     list[str] | None,
-    typer.Option("--assume", metavar="CONDITION=yes|no", help="Assumed outcome of a condition. Repeatable."),
+    typer.Option(
+        "--assume",
+        metavar="CONDITION=yes|no",
+        help="Outcome of a condition, named by the conditionIdentifier of a Choice. Repeatable.",
+    ),
 ]
 
 
@@ -62,7 +75,7 @@ BackendOptions = Annotated[
     typer.Option(
         "--backend-option",
         metavar="[ROBOT:]KEY=VALUE",
-        help="Backend option of all robots or one. Repeatable.",
+        help="Setting of a backend, for all robots or one, e.g. tries=9 or Kite:tries=9. Repeatable.",
     ),
 ]
 

@@ -63,15 +63,17 @@ def plan(
     force: Annotated[bool, typer.Option("--force", help="Overwrite a behaviour written by hand.")] = False,
     stop_after: Annotated[
         Stage | None,
-        typer.Option("--stop-after", help="Print the result of a stage as JSON and write no file."),
+        typer.Option(
+            "--stop-after", help="Stop after a stage of planning, print its result as JSON and write no file."
+        ),
     ] = None,
     schema_location: SchemaLocation = None,
     json: Json = False,
 ) -> int:
     """Plan a mission and write the robots' behaviour.
 
-    The behaviour is verified first and written only if it passes all checks. While it searches, Ctrl-C keeps
-    the best plan found so far; a second Ctrl-C ends the command.
+    The behaviour is verified first and written only if it passes all checks. During the search,
+    Ctrl-C keeps the best plan found so far; a second Ctrl-C ends the command.
 
     Example: mmrs plan field
     """

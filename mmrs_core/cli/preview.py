@@ -60,17 +60,19 @@ def preview(
     assume: Assume = None,
     logs: Annotated[
         list[Path] | None,
-        typer.Option("--logs", metavar="DIR", help="Logs of a run of the behaviour. Repeatable."),
+        typer.Option("--logs", metavar="DIR", help="Folder with logs of a run of the behaviour. Repeatable."),
     ] = None,
     json: Json = False,
 ) -> int:
     """Draw a mission's map, timeline and altitude profile.
 
-    Writes preview.html and preview.svg (the map alone). A mission is planned first; a behaviour is simulated,
-    with the outcomes that --assume gives to its conditions. With --logs, the flown tracks are drawn over the
-    planned paths. A mission that is not valid or has no feasible plan is drawn with its problems.
+    Writes preview.html and preview.svg (the map alone). A mission, or that of a folder, is planned; a
+    behaviour file is simulated. With --logs, the flown tracks are drawn over the planned paths of the
+    behaviour, which PROJECT names or contains. --assume is for behaviours; with --logs, it decides only
+    conditions that were not evaluated in flight. A mission that is not valid or has no feasible plan is drawn
+    with its problems.
 
-    Exit codes: 0 drawn · 1 drawn, but the mission is not valid · 4 drawn, but no plan is feasible
+    Exit codes: 0 drawn, 1 drawn, but the mission is not valid, 4 drawn, but no plan is feasible.
 
     Example: mmrs preview field
     """

@@ -29,10 +29,13 @@ if TYPE_CHECKING:
 def replay(
     call: typer.Context,
     behaviour: Behaviour,
-    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log files, or folders of logs.")],
-    partial: Annotated[bool, typer.Option("--partial", help="Accept logs that end before the run.")] = False,
+    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Step logs, or folders of them.")],
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Accept logs that end before the run is complete.")
+    ] = False,
     steps: Annotated[
-        bool, typer.Option("--steps", help="Print every step with the robot's position from its black box.")
+        bool,
+        typer.Option("--steps", help="Print every step, with the robot's position if a black box has it."),
     ] = False,
     json: Json = False,
 ) -> int:

@@ -28,12 +28,15 @@ def report(
     call: typer.Context,
     behaviour: Behaviour,
     logs: Annotated[
-        list[Path], typer.Argument(metavar="LOG...", help="Log files, or folders of logs and black boxes.")
+        list[Path], typer.Argument(metavar="LOG...", help="Step logs and black boxes, or folders of them.")
     ],
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="Output file. Default: report.html next to the logs."
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Output file. Default: report.html in the folder of the first log.",
         ),
     ] = None,
     context: Context = None,
@@ -45,7 +48,7 @@ def report(
 
     Compares the flight with its plan: tasks, tracks, times, energy, photos, faults, commands and links, on
     one page that works offline. The plan is the simulated behaviour, with the conditions as they were
-    answered in flight.
+    answered in flight; --assume decides only those that were not.
 
     Example: mmrs report mission/ mission/logs -o report.html
     """

@@ -44,7 +44,7 @@ def simulate(
             "-o",
             "--output",
             metavar="DIR",
-            help="Folder for logs and black boxes. Default: none are written.",
+            help="Folder for step logs and black boxes (simulated telemetry). Default: none are written.",
         ),
     ] = None,
     context: Context = None,
@@ -55,7 +55,8 @@ def simulate(
         typer.Option(
             "--backend",
             metavar="[ROBOT=]NAME",
-            help="Backend of all robots or one, in simulated time. Default: simulation. Repeatable.",
+            help="Simulator of all robots or one: simulation, or another one that 'mmrs plugin list' gives "
+            "under vehicles. Default: simulation. Repeatable.",
             autocompletion=backend_names,
         ),
     ] = None,

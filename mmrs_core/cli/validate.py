@@ -43,8 +43,8 @@ def validate(
 ) -> int:
     """Validate the models of a mission.
 
-    Prints every problem with its file, line and a hint. A project's mission, context and robot types are
-    checked together; a single file is checked alone. A model of a language that is not installed is checked
+    Prints every problem with its file, line and a hint. A mission or a behaviour is checked with its
+    context and robot types, any other model alone. A model of a language that is not installed is checked
     against its .ecore file, which --metamodel names, the model refers to or its folder contains. An .ecore
     file is checked as a metamodel.
 

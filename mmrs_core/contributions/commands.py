@@ -25,7 +25,7 @@ class Command:
 
 CORE_COMMANDS = (
     Command("demo", "Run an example end to end.", "mmrs_core.cli.demo:demo"),
-    Command("new", "Make a new mission that can be planned at once.", "mmrs_core.cli.new:new"),
+    Command("new", "Make a new mission that is ready to plan.", "mmrs_core.cli.new:new"),
     Command(
         "import", "Import drawings of map programs into a project.", "mmrs_core.cli.importing:import_drawings"
     ),

@@ -35,7 +35,7 @@ def auv() -> None:
 @app.command("sitl")
 def sitl(
     path: Annotated[
-        Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Mission or behaviour with the vehicles.")
+        Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Project folder, mission or behaviour file.")
     ],
     port: Annotated[
         int,
@@ -55,7 +55,12 @@ def sitl(
     ] = 1.0,
     surroundings: Annotated[
         Path | None,
-        typer.Option("--surroundings", metavar="FILE", help="Surroundings of the vehicles, as JSON."),
+        typer.Option(
+            "--surroundings",
+            metavar="FILE",
+            help="JSON file of the water (current, bottom, haze), obstacles and things to see; replaces "
+            "--current and --bottom.",
+        ),
     ] = None,
     current: Annotated[
         str, typer.Option("--current", metavar="NORTH,EAST", help="Water current north and east, in m/s.")
@@ -70,7 +75,7 @@ def sitl(
 ) -> int:
     """Start each AUV's simulator and control layer.
 
-    Each vehicle has its own virtual CAN bus. Prints the --connect arguments for 'mmrs run'. Type 'Thetis
+    Each vehicle has its own virtual CAN bus. Prints the arguments for 'mmrs run'. Type 'Thetis
     leak', 'all thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery 0.2' or 'Thetis cut' (its bus) to
     inject a fault, 'Thetis clear leak' to clear it, 'status' to print the vehicles' state, 'quit' to stop.
 
@@ -133,15 +138,15 @@ def _ending() -> list[signal.Signals]:
 @app.command("sheet")
 def sheet(
     path: Annotated[
-        Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Mission or behaviour with the vehicles.")
+        Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Project folder, mission or behaviour file.")
     ],
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="DIR", help="Output folder; one file per vehicle.")
     ] = Path("sheets"),
 ) -> int:
-    """Export each vehicle's configuration.
+    """Export the configuration of each underwater vehicle as JSON.
 
-    The control layer and the vision node read it with --sheet.
+    'mmrs can' reads it, and so do auv_vessel (control layer) and auv_vision (cameras) with --sheet.
 
     Example: mmrs auv sheet examples/pool-course -o sheets
     """

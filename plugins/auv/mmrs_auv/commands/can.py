@@ -91,6 +91,7 @@ def hub(
     corruption: Annotated[
         float,
         typer.Option(
+            "--corruption",
             "--corrupt",
             metavar="FRACTION",
             min=0.0,
@@ -185,16 +186,18 @@ def load(
     ] = "",
     channel: Channel = "can0",
     seconds: Annotated[
-        float, typer.Option("--for", min=0.1, metavar="SECONDS", help="Seconds to listen.")
+        float, typer.Option("--for", min=0.1, metavar="SECONDS", help="Seconds to listen on --interface.")
     ] = 10.0,
-    messages: Annotated[bool, typer.Option("--messages", help="List each message.")] = False,
+    messages: Annotated[
+        bool, typer.Option("--messages", help="List the load and response time of each message, too.")
+    ] = False,
     json: Json = False,
 ) -> int:
     """Compute a vehicle's CAN bus load.
 
-    Computes the load from message lengths and periods, with no and with the most stuff bits, and the
-    worst-case response time of each message. With --log or --interface, also measures the load of the frames
-    received.
+    Computes the load from message lengths and periods, without stuff bits and with as many as there can be,
+    and the worst-case response time of each message. With --log or --interface, also measures the load of the
+    frames received.
 
     Example: mmrs can load examples/pool --robot Naiad --messages
     """

@@ -44,7 +44,8 @@ def sheets_in(path: Path) -> Mapping[str, Sheet]:
 Vehicle = Annotated[
     Path,
     typer.Argument(
-        metavar="VEHICLE", help="Vehicle configuration (*.json), or a project or behaviour with a vehicle."
+        metavar="VEHICLE",
+        help="Vehicle configuration (*.json) of 'mmrs auv sheet', or a project or behaviour with a vehicle.",
     ),
 ]
 RobotName = Annotated[

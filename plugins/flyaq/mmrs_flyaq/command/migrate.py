@@ -20,7 +20,7 @@ Mapping = Annotated[
     typer.Option(
         "--mapping",
         metavar="FILE",
-        help="Mapping file. Default: the one of the files' dialect, e.g. FLYAQ 2015.",
+        help="TOML file that maps the classes of the dialect. Default: that of a known one, e.g. FLYAQ 2015.",
     ),
 ]
 Metamodels = Annotated[

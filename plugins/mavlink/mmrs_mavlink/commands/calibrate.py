@@ -37,7 +37,7 @@ def calibrate(
             metavar="N",
             min=1,
             max=255,
-            help="MAVLink system id, if a .tlog holds several vehicles.",
+            help="MAVLink system id of the vehicle, if a .tlog has several.",
         ),
     ] = None,
     robot_type: Annotated[
@@ -45,22 +45,28 @@ def calibrate(
         typer.Option(
             "--robot-type",
             metavar="FILE.xmi",
-            help="Robot type to compare with. The lifetime is then that of its batteries.",
+            help="Robot type to compare with; its batteries give the lifetime (flight time on one charge).",
         ),
     ] = None,
     payload: Annotated[
         float,
         typer.Option(
-            "--payload", metavar="KG", min=0.0, help="Payload in the flight: selects the movement capability."
+            "--payload",
+            metavar="KG",
+            min=0.0,
+            help="Payload carried in the flight; selects the figures of the robot type for it.",
         ),
     ] = 0.0,
-    write: Annotated[bool, typer.Option("--write", help="Write the medians into the robot type.")] = False,
+    write: Annotated[
+        bool, typer.Option("--write", help="Write the medians into the file of --robot-type.")
+    ] = False,
     json: Json = False,
 ) -> int:
     """Calculate the figures of a robot type from flight logs.
 
-    Prints acceleration, jerk, speeds, turn rate, settling time and power as the vehicle really flew them, for
-    single targets (STEP) and missions (MISSION), each with its number of values, median and spread.
+    Prints acceleration, jerk, speeds, turn rate, settling time and power as the vehicle really flew them,
+    target by target (STEP) and as an autopilot mission (MISSION), each with its number of values, median and
+    spread.
     Values of several logs count together.
 
     Example: mmrs calibrate 00000042.BIN --robot-type field/robots/quad-650.xmi --write

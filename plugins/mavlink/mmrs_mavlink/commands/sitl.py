@@ -25,8 +25,8 @@ def sitl(
     behaviour: Annotated[
         Path,
         typer.Argument(
-            metavar="BEHAVIOUR|PROJECT",
-            help="Mission or behaviour; one vehicle starts at the home of each robot.",
+            metavar="PROJECT|BEHAVIOUR",
+            help="Project folder, mission or behaviour file; one vehicle starts at the home of each robot.",
         ),
     ],
     firmware: Annotated[
@@ -84,8 +84,9 @@ def sitl(
         typer.Option(
             "--fault",
             metavar="[ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]",
-            help="Fault to inject: into ROBOT (default: all robots), @SECONDS after arming (default: at "
-            "once), for +SECONDS (default: until cleared). Repeatable.",
+            help="Fault to inject into ROBOT (default: all robots), @SECONDS after arming (default: at "
+            "launch), for +SECONDS (default: until cleared): gps-lost, position-shift, restart, stick, "
+            "obstacle, breach, battery, silent, link-down, ground-down, motor-failed or wind. Repeatable.",
         ),
     ] = None,
     surroundings: Annotated[
