@@ -214,6 +214,9 @@ class _Walk:
             words = f"the path to {self._named(end)}"
             if self._works(end):
                 self.ways.append(_Way(words, True, parts, gaps, end))
+            elif self.works and parts and self._is_in_field(last := parts[-1][-1].end):
+                self.ways.append(_Way(words, True, parts, gaps, end))
+                self._ends_at(last)
             elif any(self._is_away(each.end) for part in parts for each in part):
                 there, back = (_Way(words, inwards, parts, gaps, end) for inwards in (True, False))
                 self.round_trips.append((there, back))
@@ -230,8 +233,7 @@ class _Walk:
             last = next((part[-1].end for part in reversed(parts) if part), None)
             where = last if parts and last is not None else (ends[-1] if ends else None)
             if where is not None and not gaps and self._is_away(where) and self._stays(work, where):
-                away = dist(where[:2], self._home[:2])
-                self.caveat = f"it ends {away:.0f} m from its home, so that no exit is asked for"
+                self._ends_at(where)
                 continue
             self.ways.append(_Way(f"the path home from {self._named(work)}", False, parts, gaps, end))
 
@@ -249,11 +251,17 @@ class _Walk:
     def _is_away(self, place: Position) -> bool:
         return dist(place[:2], self._home[:2]) > _HOME
 
+    def _ends_at(self, where: Position) -> None:
+        away = dist(where[:2], self._home[:2])
+        self.caveat = f"it ends {away:.0f} m from its home, so that no exit is asked for"
+
     def _stays(self, work: int, where: Position) -> bool:
         """Return whether a robot that ends somewhere has not come out of the field after its last task."""
-        if self._is_inside(where) or any(not self._is_inside(each) for each in self._worked[work][-1:]):
-            return True
-        return any(dist(each[:2], where[:2]) <= _HOME for ends in self._worked.values() for each in ends)
+        return self._is_in_field(where) or any(not self._is_inside(each) for each in self._worked[work][-1:])
+
+    def _is_in_field(self, where: Position) -> bool:
+        worked = any(dist(at[:2], where[:2]) <= _HOME for ends in self._worked.values() for at in ends)
+        return self._is_away(where) and (worked or self._is_inside(where))
 
     def _is_inside(self, place: Position) -> bool:
         """Return whether the nearest end of all corridors out is an inner one."""

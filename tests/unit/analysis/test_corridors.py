@@ -167,6 +167,20 @@ def test_a_robot_that_ends_where_it_has_worked_needs_no_exit():
     assert through(*there[:2], work(), *back).status is Status.VIOLATED
 
 
+def test_a_branch_without_work_that_ends_where_another_one_works_comes_in_only():
+    def split(*other):
+        moves = [hold("test", rule="choice"), *path("one", (10.0, 0.0), (50.0, 0.0)), work()]
+        moves += path("two", *other, (80.0, 0.0))
+        arms = {"test": ("windy", "one 0", "two 0")}
+        made = robot("a", moves, choices=arms, jumps={"work": "stop"})
+        return finding("corridors", given(made, areas=(), corridors=(GATE,)))
+
+    verdict = split((10.0, 0.0), (50.0, 0.0))
+    assert verdict.status is Status.SAFE
+    assert verdict.caveat == "it ends 80 m from its home, so that no exit is asked for"
+    assert split((10.0, 30.0)).status is Status.VIOLATED
+
+
 def test_a_robot_that_ends_before_the_corridor_comes_out_through_it():
     beside = [*out_and_in()[:4], *path("back", (80.0, 40.0), (2.0, 3.0))]
     assert through(*beside).status is Status.VIOLATED
