@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.errors import MmrsError
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
     from mmrs_core.transformation.engine import Trace
 
 Result = TypeVar("Result")
+
+_MOST_CONDITIONS = 3
+"""Conditions at most of which all outcomes are simulated together with all outcomes of the others."""
 
 
 class Stages:
@@ -78,12 +82,23 @@ class Stages:
             "plan", lambda: plan_in_time(scene, lambda part: self.planned(part, self._seed), self._simulated)
         )
 
-    def _simulated(self, made: Plan) -> Plan | None:
-        """Return a plan with the times of its simulated behaviour; None: its run does not succeed."""
+    def _simulated(self, made: Plan) -> list[Plan]:
+        """Return a plan with the times of its simulated behaviour; none: its run does not succeed.
+
+        Where choices depend on what is not known yet, once for each outcome of their conditions; where these
+        are many, once with all of them and once with none.
+        """
+        from mmrs_core.simulation.run import asked_by
+
         behaviour, trace = transform(self.scene, made, self._contributions)
         program = program_of(behaviour, self._contributions)
-        found = self._as_simulated(made, program, trace)
-        return None if isinstance(found, str) else found
+        runs = [self._as_simulated(made, program, trace)]
+        if isinstance(runs[0], str) and (asked := asked_by(program)):
+            both, few = (True, False), len(asked) <= _MOST_CONDITIONS
+            ways = product(both, repeat=len(asked)) if few else ((each,) * len(asked) for each in both)
+            assumed = (dict(zip(asked, each, strict=True)) for each in ways)
+            runs = [self._as_simulated(made, program, trace, each) for each in assumed]
+        return [each for each in runs if not isinstance(each, str)]
 
     def planned(self, scene: Scene, seed: int) -> Plan:
         """Return the plan of an expanded scene."""
@@ -112,13 +127,15 @@ class Stages:
             return replace(self.plan, notes=(f"times are the planner's: {found}", *self.plan.notes))
         return found
 
-    def _as_simulated(self, made: Plan, program: Program, trace: Trace) -> Plan | str:
+    def _as_simulated(
+        self, made: Plan, program: Program, trace: Trace, assume: Mapping[str, bool] | None = None
+    ) -> Plan | str:
         """Return a plan with the times that its behaviour is simulated to take, or why that is not known."""
         from mmrs_core.simulation.plan_times import as_simulated
         from mmrs_runtime.semantics import Outcome
 
         try:
-            run = simulate(program, self.place, self._contributions)
+            run = simulate(program, self.place, self._contributions, assume=assume)
         except MmrsError as error:
             return str(error)
         if run.ending.outcome is not Outcome.SUCCESS:

@@ -5,7 +5,7 @@ The planner's times leave out what a behaviour adds to them, such as how runs wi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import ceil
 
@@ -18,13 +18,16 @@ _SPARE = 0.1
 """Seconds by which limits are tightened further than a task was late."""
 
 
-def plan_in_time(scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[Plan], Plan | None]) -> Plan:
+def plan_in_time(
+    scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[Plan], Sequence[Plan]]
+) -> Plan:
     """Return a plan, sought with earlier deadlines where tasks of its simulated behaviour end too late.
 
     Args:
         scene: expanded.
         plan: finds the plan of a scene.
-        timed: returns a plan with the times of its simulated behaviour; None: it cannot be simulated.
+        timed: returns a plan with the times of its simulated behaviour, for each outcome of its choices;
+            none where it cannot be simulated.
 
     Raises:
         InfeasibleError: there is no plan, or none was found that keeps all times.
@@ -40,8 +43,8 @@ def plan_in_time(scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[P
                 break
             return _kept_in_simulation(scene, plan, timed, error)
         times = timed(made)
-        found = [] if times is None else [*_overdue(scene, times)]
-        if times is None or not found:
+        found = [*dict.fromkeys(reason for each in times for reason in _overdue(scene, each))]
+        if not found:
             return made
         reasons = reasons or found
         tried = replace(
@@ -53,7 +56,7 @@ def plan_in_time(scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[P
 def _kept_in_simulation(
     scene: Scene,
     plan: Callable[[Scene], Plan],
-    timed: Callable[[Plan], Plan | None],
+    timed: Callable[[Plan], Sequence[Plan]],
     refusal: InfeasibleError,
 ) -> Plan:
     """Return the plan without limits, if it keeps them as it is simulated though by the planner's times not.
@@ -67,7 +70,7 @@ def _kept_in_simulation(
     except InfeasibleError:
         raise refusal from None
     times = timed(made)
-    if times is None or any(_overdue(scene, times)):
+    if not times or any(_overdue(scene, each) for each in times):
         raise refusal
     return made
 
@@ -99,9 +102,9 @@ def _excess(task: Task, times: Plan) -> tuple[float, float]:
     return max(0.0, late), max(0.0, over)
 
 
-def _tightened(tried: Task, asked: Task, times: Plan) -> Task:
+def _tightened(tried: Task, asked: Task, times: Sequence[Plan]) -> Task:
     """Return a task with limits that are earlier by what it exceeded the mission's."""
-    late, over = _excess(asked, times)
+    late, over = map(max, zip(*(_excess(asked, each) for each in times), strict=True))
     if late > 0.0 and tried.deadline is not None:
         tried = replace(tried, deadline=tried.deadline - late - _SPARE)
     if over > 0.0 and tried.longest is not None:

@@ -74,3 +74,9 @@ def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):
 def test_robots_that_keep_apart_only_in_turns_and_by_signals_are_planned(contributions, tmp_path):
     outcome = outcome_of(300431, contributions, tmp_path, (3, 3))
     assert (outcome.refused, outcome.complaints) == ("", [])
+
+
+def test_a_deadline_that_is_broken_if_a_condition_holds_is_refused(contributions, tmp_path):
+    outcome = outcome_of(707074, contributions, tmp_path, (3, 3))
+    late = "task 'task 2' ends 845 s after the start, its deadline is 844.6 s: 1 s late"
+    assert outcome.refused == f"{late}; a deadline of 845 s would do"

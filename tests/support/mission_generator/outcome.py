@@ -22,6 +22,7 @@ from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.errors import InfeasibleError, InvalidModelError
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
+from mmrs_core.stages import Stages
 from mmrs_runtime.semantics import Outcome as Outcomes
 
 NEAR = 1e-3
@@ -86,12 +87,11 @@ def write_project(made, registry, folder):
 
 def _carry_out(made, folder, contributions, outcome):
     models, _ = pipeline.valid_models(folder, contributions)
-    scene = pipeline.expand(pipeline.ground(models), contributions)
-    plan = pipeline.plan(scene)
+    stages = Stages(lambda: models, contributions)
+    scene, plan = stages.scene, stages.plan
     if plan.lower_bound > plan.makespan + 1e-3:
         outcome.complaints.append(f"lower bound of {plan.lower_bound} s above {plan.makespan} s")
-    behaviour, _ = pipeline.transform(scene, plan, contributions)
-    pipeline.save(behaviour, folder / "behaviour.xmi", contributions)
+    pipeline.save(stages.transformed[0], folder / "behaviour.xmi", contributions)
     behaviour = _read_again(folder / "behaviour.xmi", models, contributions, outcome)
     program = pipeline.program_of(behaviour, contributions)
     place = pipeline.place_of_scene(scene)

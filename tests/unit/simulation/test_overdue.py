@@ -14,7 +14,7 @@ WORKS = {"near": visit((100.0, 0.0, 20.0), hold=10.0), "far": visit((300.0, 0.0,
 
 def later(made):
     """Return a plan whose tasks take a tenth longer, from the mission's start on."""
-    return sooner(made, 1.1)
+    return [sooner(made, 1.1)]
 
 
 def sooner(made, share):
@@ -35,8 +35,8 @@ def test_a_task_that_would_be_late_in_the_simulation_is_done_earlier():
     made = plan_in_time(whole, planned, later)
     assert asked[0] == [120.0, 65.0]
     assert asked[1][1] < 65.0
-    assert later(made).ends["far"] <= 65.0
-    assert later(made).ends["near"] <= 120.0
+    assert later(made)[0].ends["far"] <= 65.0
+    assert later(made)[0].ends["near"] <= 120.0
 
 
 def test_a_deadline_that_no_behaviour_keeps_is_refused_with_one_that_would_do():
@@ -55,10 +55,10 @@ def test_a_deadline_that_only_the_behaviour_keeps_is_none_to_be_refused_for():
     whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=50.0)})
     with pytest.raises(InfeasibleError):
         plan(whole)
-    made = plan_in_time(whole, plan, lambda made: sooner(made, 0.9))
+    made = plan_in_time(whole, plan, lambda made: [sooner(made, 0.9)])
     assert sooner(made, 0.9).ends["far"] < 50.0 < made.ends["far"]
     with pytest.raises(InfeasibleError, match=r"task 'far' ends 52 s .* a deadline of 52 s would do"):
-        plan_in_time(whole, plan, lambda made: sooner(made, 0.99))
+        plan_in_time(whole, plan, lambda made: [sooner(made, 0.99)])
 
 
 def test_a_duration_that_the_behaviour_exceeds_is_refused():
@@ -69,6 +69,12 @@ def test_a_duration_that_the_behaviour_exceeds_is_refused():
         plan_in_time(whole, plan, later)
 
 
+def test_a_deadline_is_kept_whichever_way_choices_are_decided():
+    whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=55.0)})
+    with pytest.raises(InfeasibleError, match=r"task 'far' ends 57 s .* a deadline of 57 s"):
+        plan_in_time(whole, plan, lambda made: [sooner(made, 0.9), sooner(made, 1.1)])
+
+
 def test_a_plan_whose_behaviour_cannot_be_simulated_is_kept():
     whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=55.0)})
-    assert plan_in_time(whole, plan, lambda _: None) == plan(whole)
+    assert plan_in_time(whole, plan, lambda _: []) == plan(whole)
