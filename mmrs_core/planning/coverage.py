@@ -122,7 +122,9 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
     if pattern.cross_hatch and pattern.angle is None:  # the same for all robots, which do parts of it each
         pattern = replace(pattern, angle=hatch_angle([polygon(shell), *map(polygon, holes)]))
     layers = layers_of(
-        pattern, sweep.start, lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start)
+        pattern,
+        sweep.start,
+        lambda angle, start: _lines(worth, shut, width, sweep.along, angle, start, pattern.cross_hatch),
     )
     covered = Coverage(
         shell=tuple(shell),
@@ -190,13 +192,18 @@ def _worth(target: tuple[Polygon, ...], closed: BaseGeometry) -> tuple[Polygon, 
 
 @lru_cache(maxsize=_REMEMBERED)
 def _lines(
-    target: bytes, closed: bytes, width: float, length: float, angle: float | None, start: Point | None
+    target: bytes,
+    closed: bytes,
+    width: float,
+    length: float,
+    angle: float | None,
+    start: Point | None,
+    strict: bool,
 ) -> tuple[Swath, ...]:
     """Return the swaths over a target, both geometries as WKB: robots of one clearance share them."""
     pieces = parts(shapely.from_wkb(target))
-    return tuple(
-        swaths(pieces, width, length=length, closed=shapely.from_wkb(closed), angle=angle, start=start)
-    )
+    shut = shapely.from_wkb(closed)
+    return tuple(swaths(pieces, width, length=length, closed=shut, angle=angle, strict=strict, start=start))
 
 
 def _stroke(line: Swath, sweep: Sweep) -> Stroke:

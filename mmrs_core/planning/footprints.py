@@ -19,23 +19,36 @@ GRID = 1e-6
 """Metres to which overlays are rounded: unions of abutting strips lose area without it."""
 
 
-def footprint(lines: Sequence[Swath], width: float, length: float = 0.0) -> BaseGeometry:
+_ALIGNED = 0.02
+"""Sine of the angle by which a leg may deviate from a direction that counts."""
+
+
+def footprint(
+    lines: Sequence[Swath], width: float, length: float = 0.0, angle: float | None = None
+) -> BaseGeometry:
     """Return what swaths cover.
 
     Without a `length`, that is the union of rectangles about the legs, as long as the legs and `width`
     wide; with one, of rectangles `length` along and `width` across the leg, about each spot. About a single
-    point it is the circle that is covered whichever direction the robot faces.
+    point it is the circle that is covered whichever direction the robot faces. With an `angle`, radians from
+    east to north, only legs in that direction count, either way.
     """
-    shapes = [_along(line, width) if length <= 0.0 else _about(line, width, length) for line in lines]
+    shapes = [
+        _along(line, width, angle) if length <= 0.0 else _about(line, width, length, angle) for line in lines
+    ]
     return shapely.union_all(np.concatenate(shapes), grid_size=GRID) if shapes else Polygon()
 
 
 def uncovered_by(
-    pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float = 0.0
+    pieces: Sequence[Polygon],
+    lines: Sequence[Swath],
+    width: float,
+    length: float = 0.0,
+    angle: float | None = None,
 ) -> BaseGeometry:
-    """Return what no swath covers of the pieces."""
+    """Return what no swath covers of the pieces, as `footprint` says."""
     whole = shapely.union_all(list(pieces), grid_size=GRID)
-    return shapely.difference(whole, footprint(lines, width, length), grid_size=GRID)
+    return shapely.difference(whole, footprint(lines, width, length, angle), grid_size=GRID)
 
 
 def needed(pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float) -> list[Swath]:
@@ -62,19 +75,29 @@ def needed(pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, leng
     return [line if len(spots) == len(line.spots) else line.only(spots) for line, spots in found if spots]
 
 
-def _along(line: Swath, width: float) -> NDArray[np.object_]:
-    direction = np.diff(line.points, axis=0)
-    return _rectangles(
-        (line.points[:-1] + line.points[1:]) / 2, direction, np.hypot(direction[:, 0], direction[:, 1]), width
-    )
+def _along(line: Swath, width: float, angle: float | None) -> NDArray[np.object_]:
+    direction, middles = np.diff(line.points, axis=0), (line.points[:-1] + line.points[1:]) / 2
+    counts = _aligned(direction, angle)
+    direction, middles = direction[counts], middles[counts]
+    return _rectangles(middles, direction, np.hypot(direction[:, 0], direction[:, 1]), width)
 
 
-def _about(line: Swath, width: float, length: float) -> NDArray[np.object_]:
+def _aligned(directions: Floats, angle: float | None) -> NDArray[np.bool_]:
+    """Return which directions are that of an angle, either way; all where there is none."""
+    if angle is None:
+        return np.ones(len(directions), np.bool_)
+    across = directions @ np.array([-np.sin(angle), np.cos(angle)])
+    aligned: NDArray[np.bool_] = np.abs(across) <= _ALIGNED * np.hypot(directions[:, 0], directions[:, 1])
+    return aligned
+
+
+def _about(line: Swath, width: float, length: float, angle: float | None = None) -> NDArray[np.object_]:
     if len(line.points) == 1:
         return np.array([Point(line.points[0]).buffer(min(width, length) / 2)], dtype=object)
     direction = np.diff(line.points, axis=0)
     far = np.hypot(direction[:, 0], direction[:, 1])
-    leg, spots = line.legs_of_spots, np.array(line.spots)
+    counts = _aligned(direction, angle)[line.legs_of_spots]
+    leg, spots = line.legs_of_spots[counts], np.array(line.spots)[counts]
     centres = line.points[leg] + direction[leg] * ((spots - line.arcs[leg]) / far[leg])[:, None]
     return _rectangles(centres, direction[leg], np.full(len(spots), length), width)
 

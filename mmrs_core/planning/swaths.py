@@ -50,6 +50,7 @@ def swaths(
     length: float = 0.0,
     closed: BaseGeometry | None = None,
     angle: float | None = None,
+    strict: bool = False,
     start: tuple[float, float] | None = None,
 ) -> list[Swath]:
     """Return swaths in a good order whose footprints cover the target.
@@ -65,6 +66,7 @@ def swaths(
         length: of what an action covers along the swath, metres; 0: the swath itself covers.
         closed: where swaths may not go, its edge excepted; None: nowhere. Anywhere else they may.
         angle: direction of the swaths, radians from east to north; None: the best.
+        strict: whether only what is covered in that direction counts, wherever the swaths can have it.
         start: where the first swath should be near; None: anywhere.
 
     Raises:
@@ -77,11 +79,11 @@ def swaths(
         return []
     reach = _Reach(width, length, _near(closed, pieces, width))
     angles = [angle] if angle is not None else sweep_angles(pieces)
-    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach, angle)
+    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach, angle, strict=strict)
     if not lines:
         place = pieces[0].representative_point()
         return [Swath(np.array([[place.x, place.y]]))]
-    if length > 0.0:
+    if length > 0.0 and not strict:
         lines = needed(pieces, lines, width, length)
     begins, ends = _ends(lines)
     return [lines[i].reversed() if back else lines[i] for i, back in tour(begins, ends, start)]
@@ -177,7 +179,7 @@ def _cost(lines: Sequence[Swath], reach: _Reach, start: tuple[float, float] | No
 
 
 def _repaired(
-    pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach, angle: float | None
+    pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach, angle: float | None, *, strict: bool = False
 ) -> list[Swath]:
     """Add lines through what the lines leave out, until next to nothing is left.
 
@@ -185,10 +187,11 @@ def _repaired(
     """
     area = sum(piece.area for piece in pieces)
     for again in range(_REPAIRS):
-        rest = parts(uncovered_by(pieces, lines, reach.width, reach.length), smallest=1e-9 * area)
+        asked = angle if again < 1 + strict else None
+        only = asked if strict else None
+        rest = parts(uncovered_by(pieces, lines, reach.width, reach.length, only), smallest=1e-9 * area)
         if sum(piece.area for piece in rest) <= _LEFT_OUT * area:
             return lines
-        asked = None if again else angle
         for piece in rest:
             lines = lines + _sweep([piece], reach, _long_side(piece) if asked is None else asked)
     return lines

@@ -47,7 +47,23 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
 
 @pytest.mark.parametrize(
     "seed",
-    [101050, 101709, 103012, 104827, 202280, 295361, 300112, 300229, 310445, 340099, 320921, 603046, 700133],
+    [
+        101050,
+        101709,
+        103012,
+        104827,
+        202280,
+        295361,
+        300112,
+        300229,
+        310445,
+        340099,
+        320921,
+        603046,
+        700133,
+        704599,
+        706756,
+    ],
     ids=[
         "quicker than it cruises through a corridor",
         "a relay waits for a robot in a corridor",
@@ -62,6 +78,8 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
         "photos on arms of a choice",
         "a robot whose plan stays the same waits longer for the signal of one that may be late",
         "a robot waits for a time, and for a signal that may come later than that",
+        "a cross hatch beside an area",
+        "a branch without work that ends in the field, behind a corridor",
     ],
 )
 def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):

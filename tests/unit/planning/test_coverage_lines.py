@@ -1,5 +1,7 @@
 """Where swaths go and where along them something is done."""
 
+from math import pi
+
 import numpy as np
 import pytest
 import shapely
@@ -87,6 +89,16 @@ def test_teeth_with_narrow_gaps_are_crossed_by_straight_swaths():
     assert len(lines) == 6
     assert all(len(line.points) == 2 for line in lines)
     assert uncovered_by([field], lines, 12.0, 12.0).area < 1e-6
+
+
+@pytest.mark.parametrize("length", [0.0, 4.0])
+def test_legs_aside_cover_nothing_in_the_direction_of_their_swath(length):
+    step = Swath(np.array([[2.0, 2.0], [20.0, 2.0], [20.0, 22.0], [38.0, 22.0]]), tuple(range(0, 57, 2)))
+    field = shapely.box(18.0, 6.0, 22.0, 18.0)
+    assert uncovered_by([field], [step], 4.0, length).area < 1e-6
+    assert uncovered_by([field], [step], 4.0, length, pi / 2.0).area < 1e-6
+    assert uncovered_by([field], [step], 4.0, length, 0.0).area > 0.9 * field.area
+    assert uncovered_by([field], [step, *swaths([field], 4.0, angle=0.0)], 4.0, 0.0, pi).area < 1e-6
 
 
 def test_photos_that_show_nothing_but_what_others_show_are_not_made():
