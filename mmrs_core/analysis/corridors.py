@@ -6,7 +6,7 @@ that of a corridor in the other direction. All along, the robot keeps half its d
 and the room that it needs to turn from both sides, and from the corridor's heights; where it cuts a corner or
 stops late, so much more. Between tasks, in a diversion, and where it does not come out of the field after its
 last task, it goes where it likes; in the field is where it works, and where the nearest end of all corridors
-out is an inner one. A sortie on a branch without work follows one line in, and one out.
+out is an inner one. A sortie on a branch without work follows one line in, and out if it leaves the field.
 """
 
 from __future__ import annotations
@@ -214,7 +214,7 @@ class _Walk:
             words = f"the path to {self._named(end)}"
             if self._works(end):
                 self.ways.append(_Way(words, True, parts, gaps, end))
-            elif self.works and parts and self._is_in_field(last := parts[-1][-1].end):
+            elif self.works and parts and not gaps and self._is_in_field(last := parts[-1][-1].end):
                 self.ways.append(_Way(words, True, parts, gaps, end))
                 self._ends_at(last)
             elif any(self._is_away(each.end) for part in parts for each in part):

@@ -168,9 +168,9 @@ def test_a_robot_that_ends_where_it_has_worked_needs_no_exit():
 
 
 def test_a_branch_without_work_that_ends_where_another_one_works_comes_in_only():
-    def split(*other):
+    def split(*other, then=()):
         moves = [hold("test", rule="choice"), *path("one", (10.0, 0.0), (50.0, 0.0)), work()]
-        moves += path("two", *other, (80.0, 0.0))
+        moves += [*path("two", *other, (80.0, 0.0)), *then]
         arms = {"test": ("windy", "one 0", "two 0")}
         made = robot("a", moves, choices=arms, jumps={"work": "stop"})
         return finding("corridors", given(made, areas=(), corridors=(GATE,)))
@@ -179,6 +179,9 @@ def test_a_branch_without_work_that_ends_where_another_one_works_comes_in_only()
     assert verdict.status is Status.SAFE
     assert verdict.caveat == "it ends 80 m from its home, so that no exit is asked for"
     assert split((10.0, 30.0)).status is Status.VIOLATED
+    lost = go("lost", (0.0, 0.0, 0.0), task="t", rule="transit")
+    lost = replace(lost, target=replace(lost.target, position=None))
+    assert split((10.0, 0.0), (50.0, 0.0), then=(lost,)).status is Status.UNKNOWN
 
 
 def test_a_robot_that_ends_before_the_corridor_comes_out_through_it():
