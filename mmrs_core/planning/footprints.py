@@ -51,10 +51,13 @@ def uncovered_by(
     return shapely.difference(whole, footprint(lines, width, length, angle), grid_size=GRID)
 
 
-def needed(pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float) -> list[Swath]:
+def needed(
+    pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float, angle: float | None = None
+) -> list[Swath]:
     """Return the swaths without spots about which all that is covered of the pieces is so about others.
 
     Such are where swaths step aside around corners: only spots that are near to another one are asked about.
+    With an `angle`, what spots in that direction cover counts as covered about others in it only.
     """
     shapes = [_about(line, width, length) for line in lines]
     every = np.concatenate(shapes)
@@ -63,12 +66,15 @@ def needed(pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, leng
     near = np.unique(pairs[0][pairs[0] != pairs[1]])
     whole, tree = shapely.union_all(list(pieces), grid_size=GRID), shapely.STRtree(every)
     line_of = np.repeat(np.arange(len(lines)), [len(each) for each in shapes])
+    counts = np.concatenate([_counting(line, angle) for line in lines])
     kept = np.ones(len(every), np.bool_)
     for spot in sorted(near.tolist(), key=lambda each: len(shapes[line_of[each]])):
         kept[spot] = False
         others = tree.query(every[spot])
         own = shapely.intersection(every[spot], whole)
-        covered = shapely.union_all(every[others[kept[others]]], grid_size=GRID)
+        covered = shapely.union_all(
+            every[others[kept[others] & (counts[others] >= counts[spot])]], grid_size=GRID
+        )
         kept[spot] = shapely.difference(own, covered, grid_size=GRID).area > GRID * 2.0 * (width + length)
     left = (np.array(line.spots)[kept[line_of == i]].tolist() for i, line in enumerate(lines))
     found = zip(lines, left, strict=True)
@@ -91,12 +97,19 @@ def _aligned(directions: Floats, angle: float | None) -> NDArray[np.bool_]:
     return aligned
 
 
+def _counting(line: Swath, angle: float | None) -> NDArray[np.bool_]:
+    """Return which spots of a swath are on legs in the direction of an angle; all where there is none."""
+    if len(line.points) == 1:
+        return np.ones(1, np.bool_)
+    return _aligned(np.diff(line.points, axis=0), angle)[line.legs_of_spots]
+
+
 def _about(line: Swath, width: float, length: float, angle: float | None = None) -> NDArray[np.object_]:
     if len(line.points) == 1:
         return np.array([Point(line.points[0]).buffer(min(width, length) / 2)], dtype=object)
     direction = np.diff(line.points, axis=0)
     far = np.hypot(direction[:, 0], direction[:, 1])
-    counts = _aligned(direction, angle)[line.legs_of_spots]
+    counts = _counting(line, angle)
     leg, spots = line.legs_of_spots[counts], np.array(line.spots)[counts]
     centres = line.points[leg] + direction[leg] * ((spots - line.arcs[leg]) / far[leg])[:, None]
     return _rectangles(centres, direction[leg], np.full(len(spots), length), width)

@@ -83,8 +83,8 @@ def swaths(
     if not lines:
         place = pieces[0].representative_point()
         return [Swath(np.array([[place.x, place.y]]))]
-    if length > 0.0 and not strict:
-        lines = needed(pieces, lines, width, length)
+    if length > 0.0:
+        lines = needed(pieces, lines, width, length, angle if strict else None)
     begins, ends = _ends(lines)
     return [lines[i].reversed() if back else lines[i] for i, back in tour(begins, ends, start)]
 

@@ -2,11 +2,13 @@
 
 Places of photos come from the moves alone, and what each shows from the camera's properties: nothing that the
 planner laid out is looked at. Along a leg photos face the direction of travel; of one that is taken while the
-robot holds, only what it shows whichever way the robot faces counts.
+robot holds, only what it shows whichever way the robot faces counts. Of a cross hatch, only what is shown in
+both directions counts: that of most legs, and across it.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -20,7 +22,7 @@ from mmrs_core.analysis.motion import motions
 from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 from mmrs_core.scene import DISTANCE, AreaUse, Device, Part, Position
-from mmrs_core.scene.attributes import holes, number, ring, text
+from mmrs_core.scene.attributes import flag, holes, number, ring, text
 from mmrs_survey.names import PHOTO_GRID_TASK
 
 NAME = "photos"
@@ -30,6 +32,9 @@ TOLERATED = 1e-3
 
 GRID = 1e-6
 """Metres to which overlays are rounded."""
+
+ALIGNED = 0.02
+"""Sine of the angle by which photos may deviate from a direction of a cross hatch."""
 
 QUARTER = 16
 """Corners of a quarter of a circle around an area that robots keep away from."""
@@ -66,7 +71,8 @@ def _run(given: CheckInput) -> Iterator[Verdict]:
             continue
         bare = left > TOLERATED * whole
         found = f"{left:.1f} of {whole:.1f} m² are not in" if bare else f"{whole:.1f} m² are in"
-        message = f"task '{name}': {found} its {len(photos)} photos with the overlaps that it states"
+        asked = "in both directions, " if flag(task, "crossHatch") else ""
+        message = f"task '{name}': {found} its {len(photos)} photos {asked}with the overlaps that it states"
         yield Verdict(NAME, Status.VIOLATED if bare else Status.SAFE, message=message, place=task.place)
 
 
@@ -78,8 +84,19 @@ def _left(
     inner = [shapely.Polygon(hole) for hole in holes(task)]
     closed = shapely.union_all([*inner, *_closed(given, serving, task, photos)], grid_size=GRID)
     target = shapely.difference(shapely.make_valid(asked), closed, grid_size=GRID)
-    shown = shapely.union_all([_shown(photo) for photo in photos], grid_size=GRID)
-    return shapely.difference(target, shown, grid_size=GRID).area, target.area
+    layers = _directions(photos) if flag(task, "crossHatch") else [photos]
+    shown = [shapely.union_all([_shown(photo) for photo in each], grid_size=GRID) for each in layers]
+    left = shapely.difference(target, shapely.intersection_all(shown), grid_size=GRID)
+    return left.area, target.area
+
+
+def _directions(photos: Sequence[_Photo]) -> list[list[_Photo]]:
+    """Return the photos along the direction of most, and those across it; those made in one place in both."""
+    ways = Counter((round(x, 3), round(y, 3)) for x, y in (photo.ahead for photo in photos) if x or y)
+    (x, y), _ = max(ways.items(), key=lambda each: each[1], default=((0.0, 0.0), 0))
+    along = [photo for photo in photos if abs(x * photo.ahead[1] - y * photo.ahead[0]) <= ALIGNED]
+    across = [photo for photo in photos if abs(x * photo.ahead[0] + y * photo.ahead[1]) <= ALIGNED]
+    return [along, across]
 
 
 def _shown(photo: _Photo) -> BaseGeometry:

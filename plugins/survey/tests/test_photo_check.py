@@ -25,6 +25,13 @@ def leg(east, begin, end, every):
     yield go(f"along {east:g}", (east, end, 20.0), task="field", **passing)
 
 
+def across(north):
+    """Return the same along a line to the west."""
+    yield go(f"to {north:g} north", (30.0, north, 20.0))
+    passing = {"before": (trigger(20.0),), "after": (trigger(0.0),)}
+    yield go(f"along {north:g} north", (10.0, north, 20.0), task="field", **passing)
+
+
 def judged(*moves, areas=(), optics=OPTICS, **more):
     camera = Device("camera", {}, dict(optics))
     type = replace(robot_type(), devices={"camera": camera})
@@ -76,6 +83,17 @@ def test_a_photo_of_a_robot_that_holds_counts_whichever_way_it_faces():
     moves = (go("to", (20.0, 20.0, 20.0)), hold("there", task="field", after=(use("camera", "Snap"),)))
     ((_, message),) = judged(*moves, gridResolution=40.0)
     assert message.startswith("task 'field': 34")
+
+
+def test_a_cross_hatch_is_photographed_in_both_directions():
+    north = (*leg(10.0, 10.0, 30.0, 20.0), *leg(30.0, 10.0, 30.0, 20.0))
+    ((status, message),) = judged(*north, gridResolution=20.0, crossHatch=True)
+    photos = "its 4 photos in both directions, with the overlaps that it states"
+    assert (status, message) == (Status.VIOLATED, f"task 'field': 1600.0 of 1600.0 m² are not in {photos}")
+    both = judged(*north, *across(10.0), *across(30.0), gridResolution=20.0, crossHatch=True)
+    assert both == [(Status.SAFE, f"task 'field': 1600.0 m² are in {photos.replace('4', '8')}")]
+    half = judged(*north, *across(10.0), gridResolution=20.0, crossHatch=True)
+    assert half[0][1].startswith("task 'field': 800.0 of 1600.0 m² are not in")
 
 
 def test_what_a_photo_shows_must_be_known():

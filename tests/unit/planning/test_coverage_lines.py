@@ -109,6 +109,15 @@ def test_photos_that_show_nothing_but_what_others_show_are_not_made():
     assert line.spots == pytest.approx((0.0, 10.0, 20.0))
 
 
+def test_photos_in_a_direction_that_is_asked_for_are_not_made_up_for_by_others():
+    row = Swath(np.array([[5.0, 5.0], [25.0, 5.0]]), (0.0, 10.0, 20.0))
+    up = Swath(np.array([[15.0, 9.0], [15.0, 5.004]]), (3.996,))
+    only = needed([shapely.box(0, 0, 30, 10)], [row, up], 10.0, 10.0, 0.0)
+    assert [line.spots for line in only] == [row.spots]
+    across = needed([shapely.box(0, 0, 30, 10)], [row, up], 10.0, 10.0, pi / 2.0)
+    assert [line.points[-1].tolist() for line in across][-1] == [15.0, 5.004]
+
+
 def test_the_only_photo_left_of_a_swath_is_made_from_where_it_was():
     bend = Swath(np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]), (9.0, 13.0, 18.0))
     line = bend.only([13.0])
