@@ -82,8 +82,8 @@ class Stages:
             "plan", lambda: plan_in_time(scene, lambda part: self.planned(part, self._seed), self._simulated)
         )
 
-    def _simulated(self, made: Plan) -> list[Plan]:
-        """Return a plan with the times of its simulated behaviour; none: its run does not succeed.
+    def _simulated(self, made: Plan) -> list[Plan | str]:
+        """Return a plan with the times of its simulated behaviour, or why these are not known.
 
         Where choices depend on what is not known yet, once for each outcome of their conditions; where these
         are many, once with all of them and once with none.
@@ -92,13 +92,14 @@ class Stages:
 
         behaviour, trace = transform(self.scene, made, self._contributions)
         program = program_of(behaviour, self._contributions)
-        runs = [self._as_simulated(made, program, trace)]
+        runs: list[Plan | str] = [self._as_simulated(made, program, trace)]
         if isinstance(runs[0], str) and (asked := asked_by(program)):
             both, few = (True, False), len(asked) <= _MOST_CONDITIONS
             ways = product(both, repeat=len(asked)) if few else ((each,) * len(asked) for each in both)
             assumed = (dict(zip(asked, each, strict=True)) for each in ways)
             runs = [self._as_simulated(made, program, trace, each) for each in assumed]
-        return [each for each in runs if not isinstance(each, str)]
+            runs += [] if few else [f"of {len(asked)} conditions, only all and none were assumed to hold"]
+        return runs
 
     def planned(self, scene: Scene, seed: int) -> Plan:
         """Return the plan of an expanded scene."""

@@ -19,15 +19,17 @@ _SPARE = 0.1
 
 
 def plan_in_time(
-    scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[Plan], Sequence[Plan]]
+    scene: Scene, plan: Callable[[Scene], Plan], timed: Callable[[Plan], Sequence[Plan | str]]
 ) -> Plan:
     """Return a plan, sought with earlier deadlines where tasks of its simulated behaviour end too late.
+
+    Where it is not known whether they do, a note of the plan gives the reason.
 
     Args:
         scene: expanded.
         plan: finds the plan of a scene.
-        timed: returns a plan with the times of its simulated behaviour, for each outcome of its choices;
-            none where it cannot be simulated.
+        timed: returns a plan with the times of its simulated behaviour, or why these are not known, for each
+            outcome of its choices.
 
     Raises:
         InfeasibleError: there is no plan, or none was found that keeps all times.
@@ -42,10 +44,10 @@ def plan_in_time(
             if reasons:
                 break
             return _kept_in_simulation(scene, plan, timed, error)
-        times = timed(made)
+        times, unknown = _apart(timed(made))
         found = [*dict.fromkeys(reason for each in times for reason in _overdue(scene, each))]
         if not found:
-            return made
+            return replace(made, notes=(*unknown, *made.notes))
         reasons = reasons or found
         tried = replace(
             tried, tasks=tuple(_tightened(each, scene.task(each.name), times) for each in tried.tasks)
@@ -56,7 +58,7 @@ def plan_in_time(
 def _kept_in_simulation(
     scene: Scene,
     plan: Callable[[Scene], Plan],
-    timed: Callable[[Plan], Sequence[Plan]],
+    timed: Callable[[Plan], Sequence[Plan | str]],
     refusal: InfeasibleError,
 ) -> Plan:
     """Return the plan without limits, if it keeps them as it is simulated though by the planner's times not.
@@ -69,10 +71,17 @@ def _kept_in_simulation(
         made = plan(replace(scene, tasks=tasks))
     except InfeasibleError:
         raise refusal from None
-    times = timed(made)
-    if not times or any(_overdue(scene, each) for each in times):
+    times, unknown = _apart(timed(made))
+    if unknown or any(_overdue(scene, each) for each in times):
         raise refusal
     return made
+
+
+def _apart(runs: Sequence[Plan | str]) -> tuple[list[Plan], list[str]]:
+    """Return the plans with simulated times, and notes on the runs of which they are not known."""
+    unknown = dict.fromkeys(each for each in runs if isinstance(each, str))
+    notes = [f"whether all times are kept as simulated is not known: {each}" for each in unknown]
+    return [each for each in runs if not isinstance(each, str)], notes
 
 
 def _overdue(scene: Scene, times: Plan) -> list[str]:

@@ -75,6 +75,11 @@ def test_a_deadline_is_kept_whichever_way_choices_are_decided():
         plan_in_time(whole, plan, lambda made: [sooner(made, 0.9), sooner(made, 1.1)])
 
 
-def test_a_plan_whose_behaviour_cannot_be_simulated_is_kept():
+def test_a_plan_of_which_an_outcome_cannot_be_simulated_says_so():
     whole = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=55.0)})
-    assert plan_in_time(whole, plan, lambda _: []) == plan(whole)
+    made = plan_in_time(whole, plan, lambda made: [made, "the simulated run ends with 'timeout'"])
+    note = "whether all times are kept as simulated is not known: the simulated run ends with 'timeout'"
+    assert made.notes == (note, *plan(whole).notes)
+    tight = scene([robot()], {"far": WORKS["far"]}, tasks={"far": task("far", deadline=50.0)})
+    with pytest.raises(InfeasibleError, match="a deadline of"):
+        plan_in_time(tight, plan, lambda made: [sooner(made, 0.9), "the run does not end"])
