@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from itertools import pairwise
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import islice, pairwise
+from math import inf
 
 from mmrs_core.planning.corners import InMissions
 from mmrs_core.planning.pacing import longest_of
@@ -24,12 +26,16 @@ from mmrs_core.scene import (
     Step,
     Transit,
 )
+from mmrs_core.scene.plans import all_steps
 from mmrs_core.scene.timing import noticing
 
 _SAME = 1e-6
 
 _MOST_KNOWN = 100_000
 """Steps of which it is remembered how long they take."""
+
+_MOST_WAYS = 16
+"""Ways through choices that are looked at one by one."""
 
 
 class Charges:
@@ -59,11 +65,29 @@ class Charges:
             plan: of all robots.
             names: of those that are looked at; None: all.
         """
-        return {
-            name
-            for name, uses in self._of(plan, self._pilots if names is None else names).items()
-            if any(used + more > self._allowed(name) + _SAME for used, more in uses)
+        return set(self._missing(plan, self._pilots if names is None else names))
+
+    def missing(self, plan: Plan) -> float:
+        """Return the part of a charge by which one does not suffice so, at most; 0: all do."""
+        limited = [name for name, pilot in self._pilots.items() if pilot.charge < inf]
+        found = self._missing(plan, limited) if limited else {}
+        return max((more / self._allowed(name) for name, more in found.items()), default=0.0)
+
+    def _missing(self, plan: Plan, names: Collection[str]) -> dict[str, float]:
+        """Return the seconds by which charges do not suffice, by robot; also of those in arms of choices."""
+        ways = {each.robot: list(_ways(each)) for each in plan.robots if each.robot in names}
+        found = dict(self._of(plan, [name for name, each in ways.items() if len(each) == 1]))
+        for name, several in ways.items():
+            for way in several if len(several) > 1 else ():
+                others = (each for each in plan.robots if each.robot != name)
+                found.setdefault(name, []).extend(
+                    self._of(replace(plan, robots=(way, *others)), {name})[name]
+                )
+        missing = {
+            name: max((used + more - self._allowed(name) for used, more in uses), default=0.0)
+            for name, uses in found.items()
         }
+        return {name: more for name, more in missing.items() if more > _SAME}
 
     def left(self, plan: Plan) -> dict[str, list[float]]:
         """Return, by robot, the seconds left of a charge at least after each flight, or at the end."""
@@ -135,6 +159,28 @@ def _uses(
             yield used, pilot.diversion_more(here)
     if not launches:
         yield used + pilot.stopping, pilot.diversion_more(here) - pilot.stopping
+
+
+def _ways(plan: RobotPlan) -> Iterator[RobotPlan]:
+    """Yield what a robot does by arms of the choices in which it is charged; as it is, where ways are many.
+
+    What testing conditions takes is left out.
+    """
+    ways = list(islice(_sequences(plan.steps), _MOST_WAYS + 1))
+    yield from (replace(plan, steps=each) for each in ways) if 1 < len(ways) <= _MOST_WAYS else (plan,)
+
+
+def _sequences(steps: Sequence[Step]) -> Iterator[tuple[Step, ...]]:
+    for at, step in enumerate(steps):
+        if isinstance(step, Branch) and _charges_in(step):
+            for _, arm in step.arms:
+                yield from ((*steps[:at], *each) for each in _sequences((*arm, *steps[at + 1 :])))
+            return
+    yield tuple(steps)
+
+
+def _charges_in(branch: Branch) -> bool:
+    return any(isinstance(each, Recharge) for each in all_steps((branch,)))
 
 
 def _end_of(step: Step, here: Position) -> Position:

@@ -36,6 +36,9 @@ from mmrs_core.scene import Plan, RobotPlan, Scene
 _FAIR = 1.2
 """Times the mission time without separation up to which no other team is planned to keep apart for less."""
 
+_SPARING = 3
+"""Times that robots keep more of their charges, where those do not suffice for what was found."""
+
 
 class _Find(Protocol):
     """Returns the best decisions found for a team, with their schedule."""
@@ -238,14 +241,17 @@ def _plan_of(
     team: Team, jobs: Sequence[Job], search: _Search, best: Plan | None, *, in_turns: bool = False
 ) -> tuple[Plan, Plan]:
     """Return a plan as it was found, and as its robots keep apart; refuse one that is not better."""
-    decisions, found = search.find(team, in_turns=in_turns)
-    if isinstance(found, Shortfall):
-        raise _ShortError("no plan", partial(reasons_for, team, jobs, found))
-    _refuse_late(team, jobs, found.spans, lambda: _robots(team, jobs, decisions))
-    recorded = schedule(team, jobs, decisions, record=True)
-    if isinstance(recorded, Shortfall):
-        raise InfeasibleError("no plan: the decisions found cannot be carried out")
-    first = assemble(team, jobs, recorded)
+    decisions, first = _first_of(team, jobs, search, in_turns=in_turns)
+    # Legs of missions that are uploaded may take longer than each of them was counted for in the search.
+    for _ in range(_SPARING):
+        if not (missing := team.charges.missing(first)):
+            break
+        spared = team.sparing(missing)
+        try:
+            decisions, first = _first_of(spared, jobs, search, in_turns=in_turns)
+        except InfeasibleError:
+            break
+        team = spared
     known = first.robots in search.tried
     search.tried[first.robots] = first.makespan
     if known or better(first, best) is best:
@@ -253,6 +259,18 @@ def _plan_of(
     made = kept_apart(team, jobs, decisions, first, SearchLimit(best, search.effort), search.dear)
     _refuse_late(team, jobs, _spans(made), lambda: made.robots)
     return first, made
+
+
+def _first_of(team: Team, jobs: Sequence[Job], search: _Search, *, in_turns: bool) -> tuple[Decisions, Plan]:
+    """Return decisions and their plan before its robots are kept apart."""
+    decisions, found = search.find(team, in_turns=in_turns)
+    if isinstance(found, Shortfall):
+        raise _ShortError("no plan", partial(reasons_for, team, jobs, found))
+    _refuse_late(team, jobs, found.spans, lambda: _robots(team, jobs, decisions))
+    recorded = schedule(team, jobs, decisions, record=True)
+    if isinstance(recorded, Shortfall):
+        raise InfeasibleError("no plan: the decisions found cannot be carried out")
+    return decisions, assemble(team, jobs, recorded)
 
 
 def _robots(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Sequence[RobotPlan]:

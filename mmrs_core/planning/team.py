@@ -93,6 +93,7 @@ class Team:
         """
         self.asked = {task.name: task.wanted for task in scene.tasks} if asked is None else asked
         self.scene, self.fine = scene, fine
+        self._altitudes, self._from_homes, self._spare = altitudes, from_homes, spare
         self.spaces = spaces or Spaces(scene, from_homes=from_homes)
         self.homebound = homebound_of(scene) if homebound is None else homebound
         aloft = altitudes or {}
@@ -232,6 +233,19 @@ class Team:
                 asked=self.asked,
             )
         return self._others[key].wanting({task.name: task.wanted for task in self.scene.tasks})
+
+    def sparing(self, part: float) -> Team:
+        """Return the same team that keeps a further part of each charge."""
+        return Team(
+            self.scene,
+            fine=self.fine,
+            homebound=self.homebound,
+            altitudes=self._altitudes,
+            from_homes=self._from_homes,
+            spaces=self.spaces,
+            spare=self._spare + part,
+            asked=self.asked,
+        )
 
     def at_home(self, robots: frozenset[str]) -> Team:
         """Return a team of which some robots stay at home, made once."""

@@ -63,6 +63,7 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
         700133,
         704599,
         706756,
+        720530,
     ],
     ids=[
         "quicker than it cruises through a corridor",
@@ -80,6 +81,7 @@ def test_a_plan_through_corridors_of_which_robots_keep_apart_is_safe(contributio
         "a robot waits for a time, and for a signal that may come later than that",
         "a cross hatch beside an area",
         "a branch without work that ends in the field, behind a corridor",
+        "a way through a corridor and a hop beyond it are one mission, which takes longer",
     ],
 )
 def test_a_small_mission_is_planned_and_safe(seed, contributions, tmp_path):

@@ -4,12 +4,13 @@ from dataclasses import replace
 from math import inf
 
 import pytest
-from plain_scenes import box, road, robot, scene, task, visit, with_kinematics
+from plain_scenes import box, control, road, robot, scene, task, visit, with_kinematics
 from sound_plans import sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
-from mmrs_core.scene import Policy, Recharge
+from mmrs_core.planning.team import Team
+from mmrs_core.scene import Branch, Policy, Recharge
 from mmrs_runtime.timing import LegTiming
 
 CUTS = tuple(range(50, 1000, 50))
@@ -162,6 +163,20 @@ def test_robots_stop_at_corners_where_more_fits_into_a_charge_then(endurance, st
     assert found.timed is stops
     assert found.robots[0].sorties == 1
     assert found.lower_bound == pytest.approx(plan(replace(whole, robots=(tireless(lone),))).lower_bound)
+
+
+def test_charges_are_counted_along_each_arm_in_which_a_robot_is_charged():
+    lone = with_kinematics(robot(), endurance=200.0, recharge=100.0, energy=1e9)
+    works = {"a": folded(), "b": visit((100.0, 0.0, 20.0)), "c": visit((100.0, 50.0, 20.0))}
+    after = [("fork", "a", "windy"), ("fork", "b", None), ("a", "join", None), ("b", "join", None)]
+    controls = control("fork", "Fork"), control("join", "Join")
+    whole = scene([lone], works, after=[*after, ("join", "c", None)], controls=controls)
+    found, team = sound(whole), Team(whole)
+    (branch,) = steps_of(found, "r1", Branch)
+    assert branch.end - branch.begin > lone.kinematics.endurance
+    assert (team.charges.missing(found), team.charges.short(found)) == (0.0, set())
+    tired = with_kinematics(lone, endurance=150.0)
+    assert 0.0 < Team(replace(whole, robots=(tired,))).charges.missing(found) <= 1.0 / 3.0
 
 
 def tireless(each):
