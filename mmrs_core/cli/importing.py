@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.output import counted, report, say, say_json, say_lines, table, tell
+from mmrs_core.cli.parameters import robot_files
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -68,7 +69,11 @@ def import_drawings(
     ] = None,
     types: Annotated[
         list[Path] | None,
-        typer.Option("--types", metavar="FILE", help="Robot types beside the installed ones. Repeatable."),
+        typer.Option(
+            "--robots",
+            metavar="FILE...",
+            help="Robot type files, or a folder of them, beside the installed ones.",
+        ),
     ] = None,
     altitude: Annotated[
         float,
@@ -113,7 +118,7 @@ def import_drawings(
         raise ProtectedError(f"{output}: exists and is not empty; --into {output} adds to a project")
     session = Session(settings_of(call))
     contributions = session.contributions
-    options = _options(files, assignments or (), mapping, robots or (), types or (), contributions)
+    options = _options(files, assignments or (), mapping, robots or (), robot_files(types), contributions)
     options = replace(options, altitude=altitude, simplify=simplify)
     drawings = [_drawing(file, contributions) for file in files]
     team = bool(options.robots) or into is not None
@@ -282,7 +287,7 @@ def _without_robots(result: ImportResult, contributions: Contributions) -> Usage
 
 
 def _details(installed: str, points: Sequence[str]) -> Iterator[str]:
-    yield f"installed robot types: {installed or 'none'}; --types FILE adds others"
+    yield f"installed robot types: {installed or 'none'}; --robots FILE adds others"
     if points:
         yield f"points for homes: {', '.join(points[:10])}{', …' if len(points) > 10 else ''}"
     else:

@@ -30,13 +30,10 @@ _SEVERAL = re.compile(r"(\d{1,3})\s*[x×]\s*(\S.*)")
 _Robots = Annotated[
     list[str] | None,
     typer.Option(
-        "--robot", metavar="NAME=TYPE", help="Robot of the team and its type, see --list. Repeatable."
-    ),
-]
-_Several = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--robots", metavar="NxTYPE", help="Several robots of a type, named Alpha, Bravo, … Repeatable."
+        "--robot",
+        metavar="[NAME=|Nx]TYPE",
+        help="Robot of the team, or N of them, of a type, see --list. Without a NAME they are called Alpha, "
+        "Bravo, … Repeatable.",
     ),
 ]
 _Tasks = Annotated[
@@ -64,7 +61,6 @@ def new(
         ),
     ] = None,
     robot: _Robots = None,
-    robots: _Several = None,
     task: _Tasks = None,
     listed: Annotated[
         bool,
@@ -83,7 +79,7 @@ def new(
     tasks of a sensible size beside them; move these in the files, or draw your own areas and add them with
     mmrs import --into. Nothing is written before the project is known to be valid.
 
-    Example: mmrs new field --at 43.77,11.25 --robots '2xFreefly Astro LR1' --task PhotoGridTask
+    Example: mmrs new field --at 43.77,11.25 --robot '2xFreefly Astro LR1' --task PhotoGridTask
     """
     session = Session(settings_of(call))
     contributions = session.contributions
@@ -95,13 +91,13 @@ def new(
         raise ProtectedError(f"{folder}: exists and is not empty; choose another folder")
     title = folder.resolve().name
     if empty:
-        if at or robot or robots or task:
-            raise typer.BadParameter("--empty goes without --at, --robot, --robots and --task")
+        if at or robot or task:
+            raise typer.BadParameter("--empty goes without --at, --robot and --task")
         from mmrs_core.projects.notes import empty_project
 
         made = empty_project(folder, title, contributions)
     else:
-        made = _begun(folder, title, at, _given(robot, robots), task or (), contributions)
+        made = _begun(folder, title, at, _given(robot or ()), task or (), contributions)
         if has_errors(made.diagnostics):
             raise InvalidModelError("nothing written: the project would not be valid", made.diagnostics)
         report(made.diagnostics)
@@ -125,11 +121,7 @@ def _begun(
     from mmrs_core.projects.beginning import Beginning
     from mmrs_core.projects.positions import FORMS, position_of
 
-    missing = [
-        name
-        for name, there in (("--at", at), ("--robot or --robots", robots), ("--task", tasks))
-        if not there
-    ]
+    missing = [name for name, there in (("--at", at), ("--robot", robots), ("--task", tasks)) if not there]
     if missing and not is_terminal():
         hint = "'mmrs new --list' lists robot and task types, --empty makes a skeleton"
         raise typer.BadParameter(f"{', '.join(missing)}: missing, and only a terminal can be asked; {hint}")
@@ -163,15 +155,11 @@ def _begun(
         return beginning.project(folder, title, robots, wanted)
 
 
-def _given(named: Iterable[str] | None, several: Iterable[str] | None) -> tuple[RobotWanted, ...]:
-    """Return the robots of the options, those with names first."""
+def _given(stated: Iterable[str]) -> tuple[RobotWanted, ...]:
+    """Return the robots of the options, those with names first: others are not called like them."""
     found: list[RobotWanted] = []
-    for text in named or ():
+    for text in sorted(stated, key=lambda each: "=" not in each):
         found += _robots_of(text, f"--robot '{text}'", found)
-    for text in several or ():
-        if not _SEVERAL.fullmatch(text.strip()):
-            raise UsageError(f"--robots '{text}': expected NUMBERxTYPE, such as '2xFreefly Astro LR1'")
-        found += _robots_of(text, f"--robots '{text}'", found)
     return tuple(found)
 
 

@@ -90,7 +90,7 @@ def types_for(
     if unknown is not None:
         names = {*given, *installed}
         known = (
-            nearest(unknown.type, names) or f"there are {', '.join(sorted(names))}; --types FILE adds others"
+            nearest(unknown.type, names) or f"there are {', '.join(sorted(names))}; --robots FILE adds others"
         )
         raise UsageError(f"robot {unknown.name!r}: no robot type {unknown.type!r}; {known}")
     return given

@@ -98,7 +98,7 @@ def test_every_task_but_a_relay_can_be_done_by_a_shipped_robot_and_only_what_div
 
 
 def test_several_robots_have_names_of_their_own(mmrs, tmp_path):
-    several = ("--robot", "Alpha=Freefly Astro LR1", "--robots", "2xAmovlab P600 gas")
+    several = ("--robot", "Alpha=Freefly Astro LR1", "--robot", "2xAmovlab P600 gas")
     code, _, err = mmrs("new", tmp_path / "field", *PLACE, *several, "--task", "GoToTask")
     text = (tmp_path / "field" / "mission.xmi").read_text()
     assert (code, err) == (0, "")
@@ -126,7 +126,7 @@ def test_an_empty_project_says_what_goes_where(mmrs, tmp_path):
 @pytest.mark.parametrize(
     ("options", "code", "words"),
     [
-        ((*PLACE, "--robots", "2xFreefly Astro", "--task", "GoToTask"), 2, "Freefly Astro LR1: quadcopter"),
+        ((*PLACE, "--robot", "2xFreefly Astro", "--task", "GoToTask"), 2, "Freefly Astro LR1: quadcopter"),
         ((*PLACE, "--robot", "A=BlueROV2", "--task", "PhotoGrid"), 2, "did you mean PhotoGridTask"),
         ((*PLACE, "--robot", "A=Freefly Astro LR1", "--task", "YoYoTask"), 2, "BlueROV2 can"),
         (
@@ -135,7 +135,7 @@ def test_an_empty_project_says_what_goes_where(mmrs, tmp_path):
             "refers to elements of the context",
         ),
         ((*PLACE, "--robot", "A=BlueROV2", "--task", "YoYoTask:pitsch=3"), 2, "YoYoTask: pitsch"),
-        ((*PLACE, "--robots", "99xBlueROV2", "--task", "GoToTask"), 2, "1 to 20 robots"),
+        ((*PLACE, "--robot", "99xBlueROV2", "--task", "GoToTask"), 2, "1 to 20 robots"),
         (("--at", "1e300, 3", "--robot", "A=BlueROV2", "--task", "GoToTask"), 2, "not a position"),
         (("--at", "90, 0", "--robot", "A=BlueROV2", "--task", "GoToTask"), 2, "go to 85 degrees"),
         ((*PLACE, "--robot", "A=BlueROV2"), 2, "--task: missing"),

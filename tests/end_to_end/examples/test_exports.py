@@ -171,7 +171,7 @@ def test_tasks_are_imported_with_their_types_and_all_attributes(form, contributi
     assert run(["export", str(project), "--format", form, "--only", "tasks", "--only", "homes"]) == 0
     robots = {"Rover": "Crawler", "Hawk": "Camera drone", "Kite": "Camera drone", "Otter": "Inspection AUV"}
     options = [part for name, kind in robots.items() for part in ("--robot", f"{name}={kind}")]
-    options += [part for file in (project / "robots").iterdir() for part in ("--types", str(file))]
+    options += [part for file in (project / "robots").iterdir() for part in ("--robots", str(file))]
     assert run(["import", str(project / f"export.{form}"), "-o", str(again), *options]) == 0
     assert attributes_of(again, contributions) == attributes_of(project, contributions)
     capsys.readouterr()
