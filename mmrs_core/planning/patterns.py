@@ -71,7 +71,8 @@ def layers_of(pattern: Pattern, start: Point | None, layer: Layer) -> tuple[Sequ
     if not pattern.cross_hatch:
         return (first,)
     east, north = first[-1].points[-1].tolist()
-    second = layer(_direction(first) + pi / 2.0, (east, north))
+    along = _direction(first) if pattern.angle is None else pattern.angle
+    second = layer(along + pi / 2.0, (east, north))
     return first, _alternate(second) if pattern.alternate else second
 
 

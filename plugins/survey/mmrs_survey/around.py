@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from math import ceil, cos, dist, hypot, pi, sin
+from math import atan2, ceil, cos, dist, hypot, pi, sin
 
 import shapely
 
@@ -17,9 +17,18 @@ from mmrs_core.planning.open_lines import work_along
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Look, Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, ring, text
-from mmrs_survey.lines import without_dense
+from mmrs_survey.lines import off_leg, without_dense
 from mmrs_survey.names import ORBIT_TASK, PERIMETER_TASK
 from mmrs_survey.spacing import photographed, shots_of
+
+UNEVEN = 0.3
+"""Metres by which a side may be off the straight line between its ends, however short it is."""
+
+BENT = 0.044
+"""Share of that line by which it may be so: bent by 20 degrees, so that a camera is 10 off at its ends."""
+
+SMOOTH = pi / 8
+"""Turns between sides, radians, up to which one photo serves both where they meet."""
 
 CORNERS = 36
 """Corners of an orbit: its path is nearer to the point by 0.4 % of the radius at most."""
@@ -32,7 +41,7 @@ FAR = 30.0
 
 
 def perimeter_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return a stroke along each side of the border, layer by layer."""
+    """Return a stroke along the border for each layer; with the camera aside, one along each side of it."""
     part, aside = task.part, flag(task.part, "faceBorder")
     altitude, distance = number(part, "altitude"), number(part, "distance") or 0.0
     if altitude is None:
@@ -43,20 +52,23 @@ def perimeter_work(task: Task, robot: Robot, scene: Scene) -> Work:
     heights = _layers(part, altitude, shots.strip)
     refuse_heights(robot, [entry, *((*entry[:2], up) for up in heights)])
     refuse_blocked(robot, scene, (entry,), "the initial position")
-    sides = list(pairwise(_path_along(part, distance, entry[:2])))
+    path = _path_along(part, distance, entry[:2])
+    sides = {f"side {number}": side for number, side in enumerate(_sides(path), 1)} if aside else {"": path}
     lines = [
         (
-            f"side {number} of layer {layer}" if len(heights) > 1 else f"side {number}",
-            ((*begin, up), (*end, up)),
+            " of ".join(filter(None, (name, f"layer {layer}" if len(heights) > 1 else ""))) or "the path",
+            tuple((east, north, up) for east, north in side),
         )
         for layer, up in enumerate(heights, 1)
-        for number, (begin, end) in enumerate(sides, 1)
+        for name, side in sides.items()
     ]
     device = shots.camera.id if shots.camera else carried(robot.type, text(part, "deviceId"))
     right = 1.0 if flag(part, "clockwise") == (distance >= 0.0) else -1.0
 
+    followed = {(*two[0], *two[1]) for one, two in pairwise(sides.values()) if _is_smooth(one, two)}
+
     def stroke(_: str, line: tuple[Position, ...]) -> Stroke:
-        made = photographed(part, line, shots)
+        made = photographed(part, line, shots, begun=(*line[0][:2], *line[1][:2]) in followed)
         return replace(made, look=Look(_beside(line, right * FAR), device)) if aside else made
 
     work = work_along(scene, robot, lines, stroke, rule="perimeter")
@@ -87,6 +99,23 @@ def _path_along(part: Part, distance: float, start: Point) -> list[Point]:
         corners = corners[::-1]
     first = min(range(len(corners)), key=lambda index: dist(corners[index], start))
     return without_dense([*corners[first:], *corners[: first + 1]])
+
+
+def _sides(path: Sequence[Point]) -> Iterator[list[Point]]:
+    """Yield the parts of a path along which a camera may look in one direction, each from where one ends."""
+    first = 0
+    for last in range(2, len(path)):
+        chord = path[first], path[last]
+        if off_leg(chord, path[first + 1 : last]) > max(UNEVEN, BENT * dist(*chord)):
+            yield list(path[first:last])
+            first = last - 1
+    yield list(path[first:])
+
+
+def _is_smooth(one: Sequence[Point], two: Sequence[Point]) -> bool:
+    """Return whether photos where one side ends and the other begins would show nearly the same."""
+    (x, y), (east, north) = ((side[-1][0] - side[0][0], side[-1][1] - side[0][1]) for side in (one, two))
+    return abs(atan2(x * north - y * east, x * east + y * north)) <= SMOOTH
 
 
 def _beside(line: tuple[Position, ...], far: float) -> Position:

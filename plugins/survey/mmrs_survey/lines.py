@@ -47,13 +47,13 @@ def without_dense(points: Sequence[_Place]) -> list[_Place]:
     kept, last = distinct[:1], 0
     for end in range(2, len(distinct)):
         leg = kept[-1], distinct[end]
-        if dist(*leg) > _DENSE or _off(leg, distinct[last + 1 : end]) > _OFF:
+        if dist(*leg) > _DENSE or off_leg(leg, distinct[last + 1 : end]) > _OFF:
             last = end - 1
             kept.append(distinct[last])
     return kept + distinct[1:][-1:]
 
 
-def _off(leg: tuple[_Place, _Place], points: Sequence[_Place]) -> float:
+def off_leg(leg: tuple[_Place, _Place], points: Sequence[_Place]) -> float:
     """Return the largest distance of points from a leg, metres."""
     along, there = np.subtract(leg[1], leg[0]), np.subtract(points, leg[0])
     shares = np.clip(there @ along / max(along @ along, 1e-12), 0.0, 1.0)

@@ -58,14 +58,19 @@ def shots_of(part: Part, robot: Robot, height: float, *, sideways: bool = False)
     return Shots(camera, spacing, strip, capture_of(part, robot, camera, spacing, height))
 
 
-def photographed(part: Part, line: tuple[Position, ...], shots: Shots) -> Stroke:
-    """Return the stroke along a line with its photos, in passing where task and camera allow that."""
+def photographed(part: Part, line: tuple[Position, ...], shots: Shots, *, begun: bool = False) -> Stroke:
+    """Return the stroke along a line with its photos, in passing where task and camera allow that.
+
+    Args:
+        begun: whether there is a photo already where it begins: at stops, another one is not taken.
+    """
     how = shots.capture
     plain = Stroke(line, speed=how.speed, slow_down=None if how.speed is None else 1.0)
     if shots.camera is None:
         return replace(plain, cuts=cuts_between(line, ()))
     at = even_distances(length_of(line), shots.every)
     stroke = replace(plain, cuts=cuts_between(line, at))
+    at = at[1:] if begun and how.passing is None else at
     if how.passing is None or len(at) == 1:
         action = text(part, "actionName")
         return replace(stroke, actions=tuple(ActionAt(where, action, shots.camera.id) for where in at))

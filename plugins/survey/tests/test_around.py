@@ -6,6 +6,7 @@ import shapely
 from mmrs_survey.around import orbit_work, perimeter_work
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.geometry.stretches import point_at
 
 SHELL = ((0.0, 0.0, 0.0), (40.0, 0.0, 0.0), (40.0, 20.0, 0.0), (0.0, 20.0, 0.0))
 
@@ -40,15 +41,24 @@ def test_a_perimeter_goes_around_at_its_distance_and_faces_each_side(robot, scen
         assert stroke.look.at[2] == 10.0
 
 
-def test_a_border_drawn_freehand_has_sides_of_some_metres(robot, scene, task):
+@pytest.mark.parametrize(("facing", "most"), [(False, 1), (True, 60)])
+def test_a_border_drawn_freehand_is_followed_along_few_sides(robot, scene, task, facing, most):
     turns = [2 * pi * step / 400 for step in range(400)]
     shell = tuple(((30 + 2 * sin(7 * a)) * cos(a), (30 + 2 * sin(7 * a)) * sin(a), 0.0) for a in turns)
-    strokes = perimeter_work(perimeter(task, shell=shell, faceBorder=False), robot(), scene()).strokes
-    path = shapely.Polygon([each.points[0][:2] for each in strokes])
+    given = perimeter(task, shell=shell, faceBorder=facing, capture="AT_STOPS", photoDistance=6.0)
+    strokes = perimeter_work(given, robot(), scene()).strokes
+    path = shapely.Polygon([point[:2] for each in strokes for point in each.points])
     drawn = shapely.Polygon([point[:2] for point in shell]).buffer(8.0, join_style="mitre", mitre_limit=2.0)
-    assert len(strokes) < 100
+    assert len(strokes) <= most
     assert all(one.points[-1] == two.points[0] for one, two in pairwise((*strokes, strokes[0])))
     assert shapely.hausdorff_distance(path.exterior, drawn.exterior) <= 0.1 + 1e-9
+    places = [point_at(each.points, action.at) for each in strokes for action in each.actions]
+    assert len(places) <= path.length / 6.0 + 2.0 + len(strokes) / 2.0
+    assert all(dist(one, two) <= 6.0 + 1e-6 for one, two in pairwise((*places, places[0])))
+    for each in strokes if facing else ():
+        chord = shapely.LineString([each.points[0], each.points[-1]])
+        off = max(chord.distance(shapely.Point(point)) for point in each.points)
+        assert off <= max(0.3, 0.044 * chord.length)
 
 
 def test_a_perimeter_inside_turned_round_faces_the_border_too(robot, scene, task):
