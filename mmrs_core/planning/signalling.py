@@ -14,7 +14,7 @@ from collections.abc import Collection, Generator, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from heapq import heappop, heappush
-from itertools import accumulate, pairwise
+from itertools import accumulate, islice, pairwise
 from math import dist, inf
 from typing import TypeAlias
 
@@ -31,7 +31,7 @@ from mmrs_core.planning.separation import (
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.timeline import moves_along
 from mmrs_core.planning.travel import kinematics_of
-from mmrs_core.scene import Await, Plan, Position, Robot, RobotPlan, Scene, Signal, Step, Transit
+from mmrs_core.scene import Await, Launch, Plan, Position, Robot, RobotPlan, Scene, Signal, Step, Transit
 
 Corner: TypeAlias = tuple[Position, Position, Position]
 
@@ -52,6 +52,9 @@ _PLACES = 6
 
 _SHORT, _LONG = 3.0, 10.0
 """Distances to keep before the end of a long leg at which a robot may wait."""
+
+_TURNS = 12
+"""Times at most that a robot stays at home for another, though the two then meet no later than before."""
 
 _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
@@ -84,7 +87,7 @@ def _signalled(
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
     traffic = Traffic(team.scene, parts, least, timing=timing, charges=team.charges)
-    left = _STEPS
+    left, turns = _STEPS, _TURNS
     while left > 0:
         if not traffic.conflicts:
             made = _joined(team.scene, traffic.plan, plan)
@@ -96,6 +99,9 @@ def _signalled(
         if asked not in known:
             known[asked] = _further(team, traffic, limit, cut=cut, higher=higher)
         further = known[asked]
+        if further is None and turns:
+            turns -= 1
+            further = _in_turn(team, traffic, limit)
         if further is None:
             break
         left -= steps
@@ -138,6 +144,34 @@ def _further(team: Team, traffic: Traffic, limit: SearchLimit, *, cut: bool, hig
             return traffic.with_plan(plan)
         ask(number, may=may)
     return None
+
+
+def _in_turn(team: Team, traffic: Traffic, limit: SearchLimit) -> Traffic | None:
+    """Return what becomes of the traffic if one of the two that meet first waits at home for the other.
+
+    They may meet as early as before, where the other one sets out next: there it may be the one to wait.
+    """
+    plans = [
+        _signalled_before(team.scene, traffic.plan, (early, end), (late, place))
+        for early, late in _first_two(traffic)
+        for place in _launches_before(traffic.steps(late), _place(traffic, early, late))
+        for end in _ends_after(traffic, early, late)
+        if traffic.knows(early, end).get(late, -1) < place
+    ]
+    soon = (plan for plan in sorted(plans, key=_cost) if plan.makespan < limit.most and not limit.over)
+    return next((traffic.with_plan(plan) for plan in soon if allowed(team, traffic, plan)), None)
+
+
+def _launches_before(steps: Sequence[Step], place: int) -> list[int]:
+    """Return the last step up to a place with which a robot sets out from home, if there is one."""
+    return [each for each in range(min(place, len(steps) - 1), -1, -1) if isinstance(steps[each], Launch)][:1]
+
+
+def _ends_after(traffic: Traffic, early: str, late: str) -> list[int]:
+    """Return the steps of a robot before which it can tell the other that it is out of the way."""
+    told, over = traffic.steps(early), min(over for _, _, over in traffic.met(early, late))
+    ends = (each for each in range(over, len(told) + 1) if not isinstance(told[each - 1], Await | Signal))
+    return [*islice(ends, _ENDS)]
 
 
 def _may_cut(traffic: Traffic) -> bool:
@@ -195,11 +229,9 @@ def _single(plan: Plan) -> _Offers:
 
 def _signalling(scene: Scene, traffic: Traffic, early: str, late: str, *, cut: bool) -> _Offers:
     """Yield plans in which one robot waits for the other, as near as it can and as briefly as may help."""
-    met, told = traffic.met(early, late), traffic.steps(early)
-    last, over = min(step for step, _, _ in met), min(over for _, _, over in met)
-    ends = [each for each in range(over, len(told) + 1) if not isinstance(told[each - 1], Await | Signal)]
+    last, ends = _place(traffic, early, late), _ends_after(traffic, early, late)
     for plan, place, halved in _waiting_places(scene, traffic, late, last, cut=cut):
-        for end in ends[:_ENDS]:
+        for end in ends:
             if traffic.knows(early, end).get(late, -1) >= place:
                 break
             may = yield _signalled_before(scene, plan, (early, end), (late, place)), halved

@@ -108,6 +108,23 @@ def test_a_drone_from_afar_waits_near_the_end_of_the_corridor():
     assert any(dist(stop, (0.0, 150.0, 20.0)) < 60.0 for stop in stops)
 
 
+@pytest.mark.parametrize("endurance", [260.0, 300.0])
+def test_drones_that_recharge_take_turns_in_a_corridor_flight_by_flight(endurance):
+    battery = {"endurance": endurance, "energy": 1e9, "recharge": 200.0, "timing": LegTiming(spread=0.2)}
+    team = [with_kinematics(robot(f"r{k}", (10.0 * k, 0.0, 0.0)), **battery) for k in (0, 1)]
+    fields = {}
+    for k in (0, 1):
+        rows = [(100.0 * k + 20.0 * row, 250.0 + 600.0 * side) for row in range(6) for side in (0, 1)]
+        rows[2::4], rows[3::4] = rows[3::4], rows[2::4]
+        fields[f"t{k}"] = road(*((*place, 20.0) for place in rows), cuts=tuple(range(50, 3600, 50)))
+    whole = scene(team, fields, corridors=(LANE,), minimum_separation=5.0)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert first_conflict(whole, found, distance_to_keep(whole)) is None
+    assert all(each.sorties >= 3 for each in found.robots)
+    assert found.makespan < 1.25 * plan(replace(whole, minimum_separation=None)).makespan
+
+
 def crossing(ceiling):
     """Return two drones whose paths cross, and whose times are uncertain by a third."""
     team = [
