@@ -23,7 +23,7 @@ from mmrs_core.planning.separation import (
     stacked_altitudes,
     starting_later,
 )
-from mmrs_core.planning.signalling import DEAR, signalled
+from mmrs_core.planning.signalling import DEAR, TURNS, signalled
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Plan, Scene
 
@@ -35,6 +35,9 @@ _SPARE = (0.15, 0.08)
 
 _WORTH_SIGNALS = 1.1
 """Times the mission time without separation from which on signals are sought beside levels."""
+
+_TOO_DEAR = 1.2
+"""Times the mission time without separation from which on signals are sought once more in the end."""
 
 _MOST_SIGNALLED = 2
 """Plans, the shortest first, whose robots are then kept apart by signals; others only if there is no plan."""
@@ -52,7 +55,7 @@ def kept_apart(
 
     What is not better than the best so far is not sought any further.
     """
-    made, refusal = None, None
+    made, refusal, turns = None, None, TURNS if limit.best is None else 0
     try:
         made = separated(team, found, limit)
         if made.makespan <= DEAR * found.makespan:
@@ -61,13 +64,13 @@ def kept_apart(
         refusal = error
     levels = levelled(team, jobs, decisions, found, _beside(limit, made))
     other = levels is not None and levels.plan.robots != found.robots
-    apart = _waiting(team, levels, _beside(limit, made)) if levels is not None and other else None
-    if made is None and (levels is None or levels.conflicts):
-        dear.append((team, found))
+    apart = _waiting(team, levels, _beside(limit, made), turns) if levels is not None and other else None
     if apart is not None:
         made = apart if made is None else better(apart, made)
     if not other if made is None else made.makespan > _WORTH_SIGNALS * found.makespan:
-        made = signalled(team, found, _beside(limit, made)) or made
+        made = signalled(team, found, _beside(limit, made), turns=turns) or made
+    if made is None or made.makespan > _TOO_DEAR * found.makespan:
+        dear.append((team, found))
     made = starting_later(team, decisions, partial(_planned_better, team, jobs, _beside(limit, made))) or made
     if made is None:
         raise refusal or InfeasibleError("no plan")
@@ -79,7 +82,7 @@ def _beside(limit: SearchLimit, made: Plan | None) -> SearchLimit:
     return limit if made is None else replace(limit, best=better(made, limit.best))
 
 
-def _waiting(team: Team, levels: Traffic, limit: SearchLimit) -> Plan | None:
+def _waiting(team: Team, levels: Traffic, limit: SearchLimit, turns: int) -> Plan | None:
     """Return a plan in which robots wait where levels do not keep them apart; None if none is better."""
     if not levels.conflicts:
         return levels.plan
@@ -88,7 +91,7 @@ def _waiting(team: Team, levels: Traffic, limit: SearchLimit) -> Plan | None:
         made = separated(team, levels.plan, limit)
         if made.makespan <= DEAR * levels.plan.makespan:
             return made
-    return signalled(team, levels.plan, _beside(limit, made)) or made
+    return signalled(team, levels.plan, _beside(limit, made), turns=turns) or made
 
 
 def _planned_better(team: Team, jobs: Sequence[Job], limit: SearchLimit, decisions: Decisions) -> Plan | None:

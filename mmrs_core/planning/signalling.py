@@ -53,14 +53,16 @@ _PLACES = 6
 _SHORT, _LONG = 3.0, 10.0
 """Distances to keep before the end of a long leg at which a robot may wait."""
 
-_TURNS = 12
-"""Times at most that a robot stays at home for another, though the two then meet no later than before."""
+TURNS = 12
+"""Times at most that a robot waits at home for another, though the two then meet no later than before."""
 
 _ENDS = 8
 """Steps on from there of the other robot whose ends are tried to wait for."""
 
 
-def signalled(team: Team, plan: Plan, limit: SearchLimit = UNLIMITED, *, higher: bool = True) -> Plan | None:
+def signalled(
+    team: Team, plan: Plan, limit: SearchLimit = UNLIMITED, *, higher: bool = True, turns: int = TURNS
+) -> Plan | None:
     """Return the plan in which robots go at levels or wait so that all keep apart; None if none is found.
 
     Of the two robots that come too near first, that one does with which the mission ends sooner: it waits
@@ -71,23 +73,24 @@ def signalled(team: Team, plan: Plan, limit: SearchLimit = UNLIMITED, *, higher:
         plan: of the team.
         limit: what the plan must beat, and until when to seek.
         higher: whether a robot may fly higher, where no relay that has left could be out of its range.
+        turns: times at most that a robot waits at home for another, though they meet no later then.
     """
     best: Plan | None = None
     known: _Known = {}
     for cut in (False, True):
         if limit.most > DEAR * plan.makespan:
-            found = _signalled(team, plan, limit, known, cut=cut, higher=higher)
+            found = _signalled(team, plan, limit, known, cut=cut, higher=higher, turns=turns)
             best, limit = (best, limit) if found is None else (found, replace(limit, best=found))
     return best
 
 
 def _signalled(
-    team: Team, plan: Plan, limit: SearchLimit, known: _Known, *, cut: bool, higher: bool
+    team: Team, plan: Plan, limit: SearchLimit, known: _Known, *, cut: bool, higher: bool, turns: int
 ) -> Plan | None:
     least, timing = distance_to_keep(team.scene) or 0.0, team.timelines(hasty=recharges(plan))
     parts = _by_moves(team.scene, plan)
     traffic = Traffic(team.scene, parts, least, timing=timing, charges=team.charges)
-    left, turns = _STEPS, _TURNS
+    left = _STEPS
     while left > 0:
         if not traffic.conflicts:
             made = _joined(team.scene, traffic.plan, plan)
