@@ -3,12 +3,11 @@
 Places of photos come from the moves alone, and what each shows from the camera's properties: nothing that the
 planner laid out is looked at. Along a leg photos face the direction of travel; of one that is taken while the
 robot holds, only what it shows whichever way the robot faces counts. Of a cross hatch, only what is shown in
-both directions counts: that of most legs, and across it.
+both directions counts: those of legs across each other with which most is.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -84,19 +83,26 @@ def _left(
     inner = [shapely.Polygon(hole) for hole in holes(task)]
     closed = shapely.union_all([*inner, *_closed(given, serving, task, photos)], grid_size=GRID)
     target = shapely.difference(shapely.make_valid(asked), closed, grid_size=GRID)
-    layers = _directions(photos) if flag(task, "crossHatch") else [photos]
+    layers = _layers(photos) if flag(task, "crossHatch") else [[photos]]
+    return min(_bare(target, each) for each in layers), target.area
+
+
+def _bare(target: BaseGeometry, layers: Sequence[Sequence[_Photo]]) -> float:
+    """Return the square metres that are not in photos of every layer."""
     shown = [shapely.union_all([_shown(photo) for photo in each], grid_size=GRID) for each in layers]
-    left = shapely.difference(target, shapely.intersection_all(shown), grid_size=GRID)
-    return left.area, target.area
+    return float(shapely.difference(target, shapely.intersection_all(shown), grid_size=GRID).area)
 
 
-def _directions(photos: Sequence[_Photo]) -> list[list[_Photo]]:
-    """Return the photos along the direction of most, and those across it; those made in one place in both."""
-    ways = Counter((round(x, 3), round(y, 3)) for x, y in (photo.ahead for photo in photos) if x or y)
-    (x, y), _ = max(ways.items(), key=lambda each: each[1], default=((0.0, 0.0), 0))
-    along = [photo for photo in photos if abs(x * photo.ahead[1] - y * photo.ahead[0]) <= ALIGNED]
-    across = [photo for photo in photos if abs(x * photo.ahead[0] + y * photo.ahead[1]) <= ALIGNED]
-    return [along, across]
+def _layers(photos: Sequence[_Photo]) -> Iterator[list[list[_Photo]]]:
+    """Yield what may be the layers of a cross hatch: photos along a direction, and those across it.
+
+    Those made in one place are in both.
+    """
+    found = {(round(x, 3), round(y, 3)) for x, y in (photo.ahead for photo in photos) if x or y}
+    for x, y in sorted({max((x, y), (-x, -y)) for x, y in found} or {(0.0, 0.0)}):
+        along = [photo for photo in photos if abs(x * photo.ahead[1] - y * photo.ahead[0]) <= ALIGNED]
+        across = [photo for photo in photos if abs(x * photo.ahead[0] + y * photo.ahead[1]) <= ALIGNED]
+        yield [along, across]
 
 
 def _shown(photo: _Photo) -> BaseGeometry:

@@ -92,8 +92,17 @@ def test_a_cross_hatch_is_photographed_in_both_directions():
     assert (status, message) == (Status.VIOLATED, f"task 'field': 1600.0 of 1600.0 m² are not in {photos}")
     both = judged(*north, *across(10.0), *across(30.0), gridResolution=20.0, crossHatch=True)
     assert both == [(Status.SAFE, f"task 'field': 1600.0 m² are in {photos.replace('4', '8')}")]
+    slanted = (
+        go("to", (0.0, 0.0, 20.0)),
+        go("aside", (9.0, 3.0, 20.0), task="field", before=(trigger(1.0),)),
+    )
+    assert judged(*slanted, *north, *across(10.0), *across(30.0), gridResolution=20.0, crossHatch=True)[0][
+        0
+    ] == (Status.SAFE)
     half = judged(*north, *across(10.0), gridResolution=20.0, crossHatch=True)
     assert half[0][1].startswith("task 'field': 800.0 of 1600.0 m² are not in")
+    none = judged(hold("there", task="field"), gridResolution=20.0, crossHatch=True)
+    assert none[0][1].startswith("task 'field': 1600.0 of 1600.0 m² are not in its 0 photos")
 
 
 def test_what_a_photo_shows_must_be_known():
