@@ -1,6 +1,7 @@
 from itertools import pairwise
 from math import cos, dist, pi, sin
 
+import numpy as np
 import pytest
 import shapely
 from mmrs_survey.around import orbit_work, perimeter_work
@@ -59,6 +60,17 @@ def test_a_border_drawn_freehand_is_followed_along_few_sides(robot, scene, task,
         chord = shapely.LineString([each.points[0], each.points[-1]])
         off = max(chord.distance(shapely.Point(point)) for point in each.points)
         assert off <= max(0.3, 0.044 * chord.length)
+
+
+@pytest.mark.parametrize(("radius", "most"), [(1.0, 20.0), (5.0, 20.0), (30.0, 10.0)])
+def test_a_round_border_is_faced_all_along(robot, scene, task, radius, most):
+    turns = [2 * pi * step / 72 for step in range(72)]
+    shell = tuple((radius * cos(a), radius * sin(a), 0.0) for a in turns)
+    for each in perimeter_work(perimeter(task, shell=shell, distance=1.0), robot(), scene()).strokes:
+        chord = np.subtract(each.points[-1], each.points[0])[:2]
+        legs = np.diff(np.array(each.points)[:, :2], axis=0)
+        cosines = legs @ chord / (np.linalg.norm(legs, axis=1) * np.linalg.norm(chord))
+        assert np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))).max() <= most
 
 
 def test_a_perimeter_inside_turned_round_faces_the_border_too(robot, scene, task):
