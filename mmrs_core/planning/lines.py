@@ -93,7 +93,9 @@ class _Stop:
     acts: bool
 
 
-def swath_over(legs: Sequence[LevelLeg], width: float, length: float, clear: Clear) -> Swath | None:
+def swath_over(
+    legs: Sequence[LevelLeg], width: float, length: float, clear: Clear, *, facing: bool = False
+) -> Swath | None:
     """Return the swath that follows legs, each reached upright from the end of the one before.
 
     Args:
@@ -101,6 +103,8 @@ def swath_over(legs: Sequence[LevelLeg], width: float, length: float, clear: Cle
         width: metres that the swath covers across.
         length: metres that an action covers along; 0: the path itself covers.
         clear: whether a robot may go straight from one place to another.
+        facing: whether a robot is to face along the swath, even where an action covers all whichever way it
+            faces.
 
     Returns:
         None where the path itself would cover, but there is none.
@@ -109,7 +113,7 @@ def swath_over(legs: Sequence[LevelLeg], width: float, length: float, clear: Cle
         stops = _merged([_Stop(at, acts=False) for leg in legs for at in (leg.begin, leg.end)], clear)
         return _joined(stops) if len(stops) > 1 else None
     stops = _merged(list(_trimmed([stop for leg in legs for stop in _stops(leg, length)])), clear)
-    if len(stops) == 1 and not _seen_any_way(legs, stops[0].at, min(width, length) / 2):
+    if len(stops) == 1 and (facing or not _seen_any_way(legs, stops[0].at, min(width, length) / 2)):
         stops = [*_run_in(stops[0].at, min(_RUN_IN, length / 2), clear), *stops]
     return _joined(stops)
 

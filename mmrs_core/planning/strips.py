@@ -38,6 +38,7 @@ def swaths_along_x(
     length: float = 0.0,
     closed: BaseGeometry | None = None,
     shift: float | None = None,
+    facing: bool = False,
 ) -> list[Swath]:
     """Return swaths along x such that what they cover includes the pieces.
 
@@ -53,6 +54,7 @@ def swaths_along_x(
         closed: where swaths may not go, its edge excepted; None: nowhere.
         shift: None: strips share the excess width evenly; a number: all are as wide as they can be, and
             the lowest begins this share (0 to 1) of the excess below the pieces.
+        facing: see `swath_over`.
     """
     blocked = Polygon() if closed is None else closed
     core = shapely.buffer(blocked, -SHAVED)
@@ -62,7 +64,7 @@ def swaths_along_x(
         return not shapely.intersects(core, shapely.LineString([one, two]))
 
     swaths = (
-        swath_over(legs_over(chain, width), width, length, clear)
+        swath_over(legs_over(chain, width), width, length, clear, facing=facing)
         for group in _groups([piece for piece in pieces if piece.area > 0.0], _GAP * width)
         for chain in _chains_of(group, width, blocked, shift)
     )

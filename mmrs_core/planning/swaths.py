@@ -36,11 +36,12 @@ _LEFT_OUT = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class _Reach:
-    """What swaths have to do with: what they cover across and along, and where they may not go."""
+    """What swaths cover across and along, where they may not go, and whether their direction counts."""
 
     width: float
     length: float
     closed: BaseGeometry
+    strict: bool
 
 
 def swaths(
@@ -77,9 +78,9 @@ def swaths(
     pieces = [piece for piece in target if piece.area > 0.0]
     if not pieces:
         return []
-    reach = _Reach(width, length, _near(closed, pieces, width))
+    reach = _Reach(width, length, _near(closed, pieces, width), strict)
     angles = [angle] if angle is not None else sweep_angles(pieces)
-    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach, angle, strict=strict)
+    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach, angle)
     if not lines:
         place = pieces[0].representative_point()
         return [Swath(np.array([[place.x, place.y]]))]
@@ -155,7 +156,9 @@ def _sweep(pieces: Sequence[Polygon], reach: _Reach, angle: float, shift: float 
     turned = [_turned(piece, angle) for piece in pieces]
     closed = _turned(reach.closed, angle)
     back = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
-    lines = swaths_along_x(turned, reach.width, length=reach.length, closed=closed, shift=shift)
+    lines = swaths_along_x(
+        turned, reach.width, length=reach.length, closed=closed, shift=shift, facing=reach.strict
+    )
     return [replace(line, points=line.points @ back) for line in lines]
 
 
@@ -179,7 +182,7 @@ def _cost(lines: Sequence[Swath], reach: _Reach, start: tuple[float, float] | No
 
 
 def _repaired(
-    pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach, angle: float | None, *, strict: bool = False
+    pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach, angle: float | None
 ) -> list[Swath]:
     """Add lines through what the lines leave out, until next to nothing is left.
 
@@ -187,8 +190,8 @@ def _repaired(
     """
     area = sum(piece.area for piece in pieces)
     for again in range(_REPAIRS):
-        asked = angle if again < 1 + strict else None
-        only = asked if strict else None
+        asked = angle if again < 1 + reach.strict else None
+        only = asked if reach.strict else None
         rest = parts(uncovered_by(pieces, lines, reach.width, reach.length, only), smallest=1e-9 * area)
         if sum(piece.area for piece in rest) <= _LEFT_OUT * area:
             return lines

@@ -94,14 +94,12 @@ def _bare(target: BaseGeometry, layers: Sequence[Sequence[_Photo]]) -> float:
 
 
 def _layers(photos: Sequence[_Photo]) -> Iterator[list[list[_Photo]]]:
-    """Yield what may be the layers of a cross hatch: photos along a direction, and those across it.
-
-    Those made in one place are in both.
-    """
+    """Yield what may be the layers of a cross hatch: photos along a direction, and those across it."""
     found = {(round(x, 3), round(y, 3)) for x, y in (photo.ahead for photo in photos) if x or y}
     for x, y in sorted({max((x, y), (-x, -y)) for x, y in found} or {(0.0, 0.0)}):
-        along = [photo for photo in photos if abs(x * photo.ahead[1] - y * photo.ahead[0]) <= ALIGNED]
-        across = [photo for photo in photos if abs(x * photo.ahead[0] + y * photo.ahead[1]) <= ALIGNED]
+        facing = [photo for photo in photos if any(photo.ahead)]
+        along = [photo for photo in facing if abs(x * photo.ahead[1] - y * photo.ahead[0]) <= ALIGNED]
+        across = [photo for photo in facing if abs(x * photo.ahead[0] + y * photo.ahead[1]) <= ALIGNED]
         yield [along, across]
 
 

@@ -99,6 +99,12 @@ def test_a_cross_hatch_is_photographed_in_both_directions():
     assert judged(*slanted, *north, *across(10.0), *across(30.0), gridResolution=20.0, crossHatch=True)[0][
         0
     ] == (Status.SAFE)
+    held = [
+        move
+        for where in ((10.0, 10.0, 20.0), (30.0, 10.0, 20.0), (10.0, 30.0, 20.0), (30.0, 30.0, 20.0))
+        for move in (go("to", where), hold("there", task="field", after=(use("camera", "Snap"),)))
+    ]
+    assert judged(*north, *held, gridResolution=30.0, crossHatch=True)[0][0] == Status.VIOLATED
     half = judged(*north, *across(10.0), gridResolution=20.0, crossHatch=True)
     assert half[0][1].startswith("task 'field': 800.0 of 1600.0 m² are not in")
     none = judged(hold("there", task="field"), gridResolution=20.0, crossHatch=True)

@@ -39,8 +39,8 @@ def _covered(prints, twice):
     """Return what footprints cover, by their angles; twice: in two directions across each other."""
     if not twice:
         return shapely.union_all([shape for each in prints.values() for shape in each], grid_size=GRID)
-    still = prints.pop(None, [])
-    layers = {angle: shapely.union_all([*each, *still], grid_size=GRID) for angle, each in prints.items()}
+    facing = {angle: each for angle, each in prints.items() if angle is not None}
+    layers = {angle: shapely.union_all(each, grid_size=GRID) for angle, each in facing.items()}
     across = [(a, b) for a, b in combinations(layers, 2) if abs(abs(a - b) - 90) <= 1]
     both = shapely.get_parts([shapely.intersection(layers[a], layers[b], grid_size=GRID) for a, b in across])
     return shapely.union_all([each for each in both if each.area], grid_size=GRID)

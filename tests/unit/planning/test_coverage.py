@@ -198,6 +198,17 @@ def test_a_cross_hatch_has_one_direction_for_robots_of_all_clearances():
     assert len(directions(1.5)) == 2
 
 
+@pytest.mark.parametrize("high", [0.5, 1.5, 2.5, 6.0])
+def test_robots_face_in_both_directions_of_a_cross_hatch_over_what_one_photo_shows_any_way(high):
+    shell = ((0.0, 0.0), (20.0, 0.0), (20.0, high), (0.0, high))
+    sweep = Sweep(9.0, 8.0, "test", length=8.0, action="photo", pattern=Pattern(cross_hatch=True))
+    found = {"": set(), "across": set()}
+    for stroke in work_over(scene(), robot(), shell, sweep).strokes:
+        east, north = np.subtract(stroke.points[-1], stroke.points[0])[:2]
+        found[stroke.part].add(round(degrees(atan2(north, east))) % 180)
+    assert sorted(found.values()) == [{0}, {90}]
+
+
 def test_the_first_stroke_is_near_the_start():
     work = work_over(
         scene(), robot(), SQUARE, Sweep(altitude=9.0, width=20.0, rule="test", start=(100.0, 100.0))

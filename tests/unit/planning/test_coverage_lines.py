@@ -191,7 +191,7 @@ def test_a_triangle_whose_flat_side_is_off_by_rounding_has_a_leg():
 def test_what_swaths_leave_out_is_covered_in_the_direction_that_is_asked_for():
     piece = shapely.box(0, 0, 60, 20)
     first = Swath(np.array([[5.0, 0.0], [5.0, 20.0]]))
-    reach = _Reach(10.0, 0.0, shapely.Polygon())
+    reach = _Reach(10.0, 0.0, shapely.Polygon(), strict=False)
     asked = _repaired([piece], [first], reach, np.pi / 2.0)
     assert all(np.ptp(line.points[:, 0]) < 1e-9 for line in asked)
     assert uncovered_by([piece], asked, 10.0, 0.0).area < 1e-6
