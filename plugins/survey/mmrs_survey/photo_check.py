@@ -8,8 +8,9 @@ both directions counts: those of legs across each other with which most is.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import cos, dist, hypot, inf, pi
 
@@ -53,6 +54,23 @@ class _Photo:
     ahead: tuple[float, float]
     width: float
     length: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Camera:
+    """Attributes: every: metres after which it is triggered again; since: those after it last was."""
+
+    device: Device = NO_CAMERA
+    every: float = inf
+    since: float = 0.0
+
+    def asked(self, action: Action, devices: Mapping[str, Device], *, repeats: bool) -> _Camera:
+        """Return the camera that takes a photo, and repeats that from there on or ends it."""
+        device = devices.get(action.device, NO_CAMERA)
+        return _Camera(device, _distance(action)) if repeats else replace(self, device=device)
+
+
+_OFF = _Camera()
 
 
 def _run(given: CheckInput) -> Iterator[Verdict]:
@@ -145,32 +163,35 @@ def _closed(
 
 
 def _photos(given: CheckInput, robot: RobotProgram, name: str, task: Part) -> Iterator[_Photo]:
-    """Yield the photos of a task that a robot takes, in the order of its moves."""
+    """Yield the photos of a task that a robot takes, whatever its Choices decide."""
     single, repeated = text(task, "actionName"), text(task, "triggerAction")
     devices = type_of(given, robot).devices
-    camera, every, since = NO_CAMERA, inf, 0.0
+    sources = defaultdict[int, list[int]](list)
+    for source, transition in robot.transitions.items():
+        for following in transition.next_moves:
+            sources[following].append(source)
+    found = dict[int, _Camera]()
     for path in motions(given)[robot.id].paths:
         move, points = robot.moves[path.move], path.points
+        before = [found.get(source, _OFF) for source in sources[path.move]]
+        camera = before[0] if before and all(each == before[0] for each in before) else _OFF
         for action in move.before if move.task == name else ():
             if action.name in (single, repeated):
-                camera = devices.get(action.device, NO_CAMERA)
-                yield _photo(task, camera, points[0], points[:2])
-            if action.name == repeated:
-                every, since = _distance(action), 0.0
+                camera = camera.asked(action, devices, repeats=action.name == repeated)
+                yield _photo(task, camera.device, points[0], points[:2])
         for one, two in pairwise(points):
             begin, left = one, dist(one, two)
-            while since + left >= every + ONE_PLACE:
-                share = max(0.0, every - since) / left
+            while camera.since + left >= camera.every + ONE_PLACE:
+                share = max(0.0, camera.every - camera.since) / left
                 begin = tuple(a + share * (b - a) for a, b in zip(begin, two, strict=True))  # type: ignore[assignment]
-                left, since = left - (every - since), 0.0
-                yield _photo(task, camera, begin, (one, two))
-            since += left
+                left, camera = left - (camera.every - camera.since), replace(camera, since=0.0)
+                yield _photo(task, camera.device, begin, (one, two))
+            camera = replace(camera, since=camera.since + left)
         for action in move.after if move.task == name else ():
             if action.name in (single, repeated):
-                camera = devices.get(action.device, NO_CAMERA)
-                yield _photo(task, camera, points[-1], points[-2:])
-            if action.name == repeated:
-                every, since = _distance(action), 0.0
+                camera = camera.asked(action, devices, repeats=action.name == repeated)
+                yield _photo(task, camera.device, points[-1], points[-2:])
+        found[path.move] = camera
 
 
 def _distance(action: Action) -> float:

@@ -32,11 +32,11 @@ def across(north):
     yield go(f"along {north:g} north", (10.0, north, 20.0), task="field", **passing)
 
 
-def judged(*moves, areas=(), optics=OPTICS, **more):
+def judged(*moves, areas=(), optics=OPTICS, ways=None, **more):
     camera = Device("camera", {}, dict(optics))
     type = replace(robot_type(), devices={"camera": camera})
     given = CheckInput(
-        program(robot("a", moves, home=(0.0, 0.0, 20.0))),
+        program(robot("a", moves, home=(0.0, 0.0, 20.0), **ways or {})),
         {ROBOT_TYPE: type},
         {PLAIN_ROBOT.metaclass: PLAIN_ROBOT},
         {kind.metaclass: kind for kind in MOVE_KINDS},
@@ -109,6 +109,19 @@ def test_a_cross_hatch_is_photographed_in_both_directions():
     assert half[0][1].startswith("task 'field': 800.0 of 1600.0 m² are not in")
     none = judged(hold("there", task="field"), gridResolution=20.0, crossHatch=True)
     assert none[0][1].startswith("task 'field': 1600.0 of 1600.0 m² are not in its 0 photos")
+
+
+def test_photos_in_passing_of_one_way_are_not_made_on_another():
+    moves = (
+        go("choice", (10.0, 0.0, 20.0)),
+        go("to it", (10.0, 10.0, 20.0), task="field", after=(trigger(20.0),)),
+        go("along it", (10.0, 30.0, 20.0), task="field", after=(trigger(0.0),)),
+        go("by it", (30.0, 10.0, 20.0)),
+        go("past it", (30.0, 30.0, 20.0)),
+    )
+    ways = {"choices": {"choice": ("clear", "to it", "by it")}, "jumps": {"along it": "stop"}}
+    ((_, message),) = judged(*moves, ways=ways, gridResolution=20.0)
+    assert message.startswith("task 'field': 800.0 of 1600.0 m² are not in its 2 photos")
 
 
 def test_what_a_photo_shows_must_be_known():
