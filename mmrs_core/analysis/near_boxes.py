@@ -29,18 +29,21 @@ def overlapping_boxes(robots: Indices, low: Floats, high: Floats, times: Floats,
     heads = np.full(size, -1, np.int64)
     box, after = np.empty(1024, np.int64), np.empty(1024, np.int64)
     used, unused = 0, -1
+    boxes = np.column_stack((low, high, times[:, 1]))
     corners = np.empty((len(robots), 2), np.int64)
     found, count = np.empty((1024, 2), np.intp), 0
     for i in range(len(robots)):
-        west, south = floor(low[i, 0] / cell), floor(low[i, 1] / cell)
+        left, front, under, right, back, over, end = boxes[i]
+        begin = times[i, 0]
+        west, south = floor(left / cell), floor(front / cell)
         corners[i, 0], corners[i, 1] = west, south
-        for x in range(west, floor(high[i, 0] / cell) + 1):
-            for y in range(south, floor(high[i, 1] / cell) + 1):
+        for x in range(west, floor(right / cell) + 1):
+            for y in range(south, floor(back / cell) + 1):
                 place = ((x * 73856093) ^ (y * 19349663)) & (size - 1)
                 last, entry = -1, heads[place]
                 while entry >= 0:
                     j, following = box[entry], after[entry]
-                    if times[j, 1] <= times[i, 0]:
+                    if boxes[j, 6] <= begin:
                         if last < 0:
                             heads[place] = following
                         else:
@@ -50,13 +53,13 @@ def overlapping_boxes(robots: Indices, low: Floats, high: Floats, times: Floats,
                         continue
                     if (
                         robots[i] != robots[j]
-                        and low[i, 0] < high[j, 0]
-                        and low[j, 0] < high[i, 0]
-                        and low[i, 1] < high[j, 1]
-                        and low[j, 1] < high[i, 1]
-                        and low[i, 2] < high[j, 2]
-                        and low[j, 2] < high[i, 2]
-                        and times[i, 0] < times[i, 1]
+                        and left < boxes[j, 3]
+                        and boxes[j, 0] < right
+                        and front < boxes[j, 4]
+                        and boxes[j, 1] < back
+                        and under < boxes[j, 5]
+                        and boxes[j, 2] < over
+                        and begin < end
                         and max(west, corners[j, 0]) == x
                         and max(south, corners[j, 1]) == y
                     ):

@@ -41,7 +41,7 @@ def overlapping_codes(
         starts[s] += starts[s - 1]
     total = starts[-1]
     members = np.empty(total, np.int64)
-    low, high = np.empty((total, 3)), np.empty((total, 3))
+    boxes = np.empty((total, 6))
     squares = 0.0
     for i in range(n):
         whole = least[i]
@@ -58,8 +58,8 @@ def overlapping_codes(
                 start = places[i, 0, axis]
                 along = places[i, 1, axis] - start
                 one, two = start + behind * along, start + ahead * along
-                low[k, axis], high[k, axis] = min(one, two) - reach[i], max(one, two) + reach[i]
-            squares += (high[k, 0] - low[k, 0]) ** 2 + (high[k, 1] - low[k, 1]) ** 2
+                boxes[k, axis], boxes[k, 3 + axis] = min(one, two) - reach[i], max(one, two) + reach[i]
+            squares += (boxes[k, 3] - boxes[k, 0]) ** 2 + (boxes[k, 4] - boxes[k, 1]) ** 2
     cell = 2.0 * max(sqrt(squares / total), 1e-6)
     size = 4
     while size < 4 * most:
@@ -73,22 +73,23 @@ def overlapping_codes(
         used = 1
         for k in range(starts[s], starts[s + 1]):
             i = members[k]
-            x0, y0 = floor(low[k, 0] / cell), floor(low[k, 1] / cell)
+            left, front, under, right, back, over = boxes[k]
+            x0, y0 = floor(left / cell), floor(front / cell)
             corner[k, 0], corner[k, 1] = x0, y0
-            for x in range(x0, floor(high[k, 0] / cell) + 1):
-                for y in range(y0, floor(high[k, 1] / cell) + 1):
+            for x in range(x0, floor(right / cell) + 1):
+                for y in range(y0, floor(back / cell) + 1):
                     place = ((x * 73856093) ^ (y * 19349663)) & (size - 1)
                     entry = heads[place]
                     while entry > 0:
                         o = box[entry]
                         entry = after[entry]
                         if (
-                            low[k, 0] < high[o, 0]
-                            and low[o, 0] < high[k, 0]
-                            and low[k, 1] < high[o, 1]
-                            and low[o, 1] < high[k, 1]
-                            and low[k, 2] < high[o, 2]
-                            and low[o, 2] < high[k, 2]
+                            left < boxes[o, 3]
+                            and boxes[o, 0] < right
+                            and front < boxes[o, 4]
+                            and boxes[o, 1] < back
+                            and under < boxes[o, 5]
+                            and boxes[o, 2] < over
                             and max(x0, corner[o, 0]) == x
                             and max(y0, corner[o, 1]) == y
                         ):
