@@ -77,8 +77,8 @@ def keys(
         list[str],
         typer.Option(
             "--robot",
-            metavar="NAME",
-            help="Robot, or NAME=ROBOT,ROBOT for a process that runs several robots. Repeatable.",
+            metavar="[NAME=]ROBOT[,ROBOT]",
+            help="Robot, or several that one process runs, which then needs a NAME. Repeatable.",
         ),
     ],
     hosts: Annotated[
@@ -146,7 +146,7 @@ def gateway(
     robot: Annotated[
         str,
         typer.Option(
-            "--robot", metavar="NAME", help="Robot that the program controls.", autocompletion=robot_names
+            "--robot", metavar="ROBOT", help="Robot that the program controls.", autocompletion=robot_names
         ),
     ],
     listen: Listen = None,
@@ -213,7 +213,7 @@ def state(
     run: Run = "run-0",
     robots: Annotated[
         list[str] | None,
-        typer.Option("--robot", metavar="NAME", help="Robot that must answer. Default: any. Repeatable."),
+        typer.Option("--robot", metavar="ROBOT", help="Robot that must answer. Default: any. Repeatable."),
     ] = None,
     seconds: Annotated[
         float, typer.Option("--seconds", metavar="SECONDS", min=0.1, help="Seconds to wait for answers.")

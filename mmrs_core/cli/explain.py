@@ -34,19 +34,19 @@ def explain(
         str,
         typer.Option(
             "--robot",
-            metavar="ID",
+            metavar="ROBOT",
             help="List the lines generated for this robot.",
             autocompletion=generated_robots,
         ),
     ] = "",
     move: Annotated[
-        str, typer.Option("--move", metavar="ID", help="List the lines generated for this move.")
+        str, typer.Option("--move", metavar="MOVE", help="List the lines generated for this move.")
     ] = "",
     task: Annotated[
         str,
         typer.Option(
             "--task",
-            metavar="NAME",
+            metavar="TASK",
             help="List the lines generated for this task.",
             autocompletion=generated_tasks,
         ),

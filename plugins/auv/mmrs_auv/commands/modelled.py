@@ -49,7 +49,7 @@ Vehicle = Annotated[
     ),
 ]
 RobotName = Annotated[
-    str, typer.Option("--robot", metavar="NAME", help="Vehicle to use, if there are several.")
+    str, typer.Option("--robot", metavar="ROBOT", help="Vehicle to use, if there are several.")
 ]
 
 
