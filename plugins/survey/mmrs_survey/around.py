@@ -8,14 +8,16 @@ from itertools import pairwise
 from math import atan2, ceil, cos, dist, hypot, pi, sin
 
 import shapely
+from shapely.geometry.polygon import orient
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.polygons import parts, polygon
+from mmrs_core.geometry.stretches import LEAST
 from mmrs_core.planning.devices import carried
 from mmrs_core.planning.open_lines import work_along
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
-from mmrs_core.scene import Look, Part, Point, Position, Robot, Scene, Stroke, Task, Work
+from mmrs_core.scene import Gap, Look, Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, ring, text
 from mmrs_survey.lines import off_leg, without_dense
 from mmrs_survey.names import ORBIT_TASK, PERIMETER_TASK
@@ -36,12 +38,18 @@ CORNERS = 36
 MITRE = 2.0
 """Distances from the border by which a path around a sharp corner may stick out."""
 
+FACED = 1.5
+"""Distances of a path from the border within which it faces the border."""
+
 FAR = 30.0
 """Lengths of a side at which a camera aims beyond it, so that it keeps its direction within a degree."""
 
 
 def perimeter_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return a stroke along the border for each layer; with the camera aside, one along each side of it."""
+    """Return a stroke along the border for each layer; with the camera aside, one along each side of it.
+
+    Where no path at its distance faces the border, as in a narrow courtyard, that is a gap.
+    """
     part, aside = task.part, flag(task.part, "faceBorder")
     altitude, distance = number(part, "altitude"), number(part, "distance") or 0.0
     if altitude is None:
@@ -52,27 +60,33 @@ def perimeter_work(task: Task, robot: Robot, scene: Scene) -> Work:
     heights = _layers(part, altitude, shots.strip)
     refuse_heights(robot, [entry, *((*entry[:2], up) for up in heights)])
     refuse_blocked(robot, scene, (entry,), "the initial position")
-    path = _path_along(part, distance, entry[:2])
-    sides = {f"side {number}": side for number, side in enumerate(_sides(path), 1)} if aside else {"": path}
+    paths = _paths_along(part, distance, entry[:2])
+    parted = [list(_sides(path)) if aside else [path] for path in paths]
+    sides = [side for each in parted for side in each]
+    kind = "side" if aside else "path" if len(paths) > 1 else ""
     lines = [
         (
-            " of ".join(filter(None, (name, f"layer {layer}" if len(heights) > 1 else ""))) or "the path",
+            " of ".join(
+                filter(None, (kind and f"{kind} {number}", f"layer {layer}" if len(heights) > 1 else ""))
+            )
+            or "the path",
             tuple((east, north, up) for east, north in side),
         )
         for layer, up in enumerate(heights, 1)
-        for name, side in sides.items()
+        for number, side in enumerate(sides, 1)
     ]
     device = shots.camera.id if shots.camera else carried(robot.type, text(part, "deviceId"))
     right = 1.0 if flag(part, "clockwise") == (distance >= 0.0) else -1.0
 
-    followed = {(*two[0], *two[1]) for one, two in pairwise(sides.values()) if _is_smooth(one, two)}
+    followed = {(*two[0], *two[1]) for each in parted for one, two in pairwise(each) if _is_smooth(one, two)}
 
     def stroke(_: str, line: tuple[Position, ...]) -> Stroke:
         made = photographed(part, line, shots, begun=(*line[0][:2], *line[1][:2]) in followed)
         return replace(made, look=Look(_beside(line, right * FAR), device)) if aside else made
 
     work = work_along(scene, robot, lines, stroke, rule="perimeter")
-    return replace(work, entry=entry, notes=shots.capture.notes)
+    gaps = *work.gaps, *_unfaced(part, distance, paths, altitude)
+    return replace(work, entry=entry, notes=shots.capture.notes, gaps=gaps)
 
 
 def _layers(part: Part, lowest: float, strip: float | None) -> list[float]:
@@ -85,20 +99,42 @@ def _layers(part: Part, lowest: float, strip: float | None) -> list[float]:
     return heights[::-1] if flag(part, "startFromTop") else heights
 
 
-def _path_along(part: Part, distance: float, start: Point) -> list[Point]:
-    """Return the closed path at a distance outside of a border, from its corner nearest to the start.
+def _paths_along(part: Part, distance: float, start: Point) -> list[list[Point]]:
+    """Return the closed paths at a distance outside of a border, each from its corner nearest to the last.
 
-    Corners that are dense, as on a border drawn freehand, are left out.
+    There are several around a courtyard with a narrow mouth, or inside of rooms that a narrow neck joins. On
+    all of them, the border is on the same side. Corners that are dense, as on a border drawn freehand, are
+    left out.
     """
     grown = shapely.buffer(polygon(ring(part, "shell")), distance, join_style="mitre", mitre_limit=MITRE)
-    found = parts(grown)
-    if not found:
+    found = [orient(each, -1.0 if flag(part, "clockwise") else 1.0) for each in parts(grown)]
+    left = [each.coords[:-1] for shape in found for each in (shape.exterior, *shape.interiors)]
+    if not left:
         raise InfeasibleError(f"nothing of the area is {-distance:g} m from its border")
-    corners = [(x, y) for x, y in found[0].exterior.coords[:-1]]
-    if found[0].exterior.is_ccw == flag(part, "clockwise"):
-        corners = corners[::-1]
-    first = min(range(len(corners)), key=lambda index: dist(corners[index], start))
-    return without_dense([*corners[first:], *corners[: first + 1]])
+    paths = list[list[Point]]()
+    while left:
+        _, path, first = min(
+            (dist(corner, start), path, first)
+            for path, corners in enumerate(left)
+            for first, corner in enumerate(corners)
+        )
+        corners = left.pop(path)
+        start = corners[first]
+        paths.append(without_dense([*corners[first:], *corners[: first + 1]]))
+    return paths
+
+
+def _unfaced(part: Part, distance: float, paths: Sequence[Sequence[Point]], up: float) -> Iterator[Gap]:
+    """Yield where a border is farther from all paths along it than where two sides meet at a right angle."""
+    shell = polygon(ring(part, "shell"))
+    border = shapely.LinearRing(shell.exterior.coords)
+    seen = shapely.buffer([shapely.LineString(path) for path in paths], FACED * abs(distance) + UNEVEN)
+    left = shapely.difference(shapely.LineString(border.coords), shapely.union_all(seen))
+    for each in shapely.get_parts(shapely.line_merge(left)):
+        if each.length > LEAST:
+            begin = shapely.line_locate_point(border, shapely.Point(each.coords[0]))
+            east, north = shapely.line_interpolate_point(each, 0.5, normalized=True).coords[0]
+            yield Gap("the border", float(begin), each.length, (east, north, up), "other sides of it")
 
 
 def _sides(path: Sequence[Point]) -> Iterator[list[Point]]:

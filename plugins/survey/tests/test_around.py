@@ -82,6 +82,65 @@ def test_a_perimeter_inside_turned_round_faces_the_border_too(robot, scene, task
         perimeter_work(perimeter(task, distance=-11.0), robot(), scene())
 
 
+def at_ground(*corners):
+    return tuple((*corner, 0.0) for corner in corners)
+
+
+def faced(strokes, shell):
+    """Yield how far before a place on each stroke the border is to which its camera looks, metres."""
+    border = shapely.LinearRing([point[:2] for point in shell])
+    for each in strokes:
+        begin, end = np.array(each.points[0][:2]), np.array(each.points[-1][:2])
+        there = begin + 0.2 * (end - begin)
+        aim = shapely.LineString([there, there + each.look.at[:2] - (begin + end) / 2.0])
+        yield round(shapely.intersection(aim, border).distance(shapely.Point(there)), 3)
+
+
+@pytest.mark.parametrize("facing", [False, True])
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_all_rooms_are_gone_around_and_what_no_path_faces_is_left_out(robot, scene, task, facing, clockwise):
+    rooms = at_ground(
+        *((0, 0), (60, 0), (60, 22), (80, 22), (80, 0), (140, 0), (140, 60)),
+        *((80, 60), (80, 38), (60, 38), (60, 60), (0, 60)),
+    )
+    given = perimeter(
+        task,
+        shell=rooms,
+        distance=-10.0,
+        initialPosition=(130.0, 30.0, 0.0),
+        clockwise=clockwise,
+        faceBorder=facing,
+    )
+    work = perimeter_work(given, robot(), scene())
+    gone = shapely.get_parts(
+        shapely.line_merge(shapely.MultiLineString([[p[:2] for p in each.points] for each in work.strokes]))
+    )
+    assert {each.bounds for each in gone} == {(10, 10, 50, 50), (90, 10, 130, 50)}
+    assert work.strokes[0].points[0][0] == 130.0
+    assert not facing or set(faced(work.strokes, rooms)) == {10.0}
+    assert [(round(gap.begin, 1), round(gap.length, 1)) for gap in work.gaps] == [(87.3, 9.4), (331.3, 9.4)]
+
+
+def test_a_courtyard_with_a_narrow_mouth_is_gone_around_inside(robot, scene, task):
+    walls = ((0, 0), (80, 0), (80, 80), (46, 80), (46, 70), (70, 70), (70, 10), (10, 10), (10, 70), (34, 70))
+    shell = at_ground(*walls, (34, 80), (0, 80))
+    work = perimeter_work(perimeter(task, shell=shell), robot(), scene())
+    inside = [
+        each for each in work.strokes if shapely.box(0, 0, 80, 80).covers(shapely.LineString(each.points))
+    ]
+    path = shapely.polygonize([shapely.LineString([p[:2] for p in each.points]) for each in inside])
+    assert shapely.equals(shapely.unary_union(path), shapely.box(18, 18, 62, 62))
+    assert set(faced(inside, shell)) == {8.0}
+    assert [round(gap.length, 1) for gap in work.gaps] == [1.4, 1.4]
+
+
+def test_a_narrow_notch_is_left_out_of_a_perimeter(robot, scene, task):
+    shell = at_ground((0, 0), (60, 0), (60, 50), (36, 50), (36, 10), (24, 10), (24, 50), (0, 50))
+    (gap,) = perimeter_work(perimeter(task, shell=shell), robot(), scene()).gaps
+    assert (gap.line, gap.area, gap.at[:2]) == ("the border", "other sides of it", (30.0, 10.0))
+    assert 80.0 < gap.length < 92.0
+
+
 @pytest.mark.parametrize(
     ("more", "heights"),
     [

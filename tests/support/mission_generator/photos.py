@@ -124,7 +124,7 @@ def _off_line(part, places, solvable):
         line = shapely.Point(attributes["point"][:2]).buffer(attributes["radius"], quad_segs=90).exterior
     elif "shell" in attributes:
         shell = shapely.Polygon([point[:2] for point in attributes["shell"]])
-        line = shell.buffer(attributes["distance"], join_style="mitre", mitre_limit=2.0).exterior
+        line = shell.buffer(attributes["distance"], join_style="mitre", mitre_limit=2.0).boundary
         top, count = attributes.get("topAltitude"), int(attributes.get("layers") or 1)
         heights = np.linspace(heights[0], top or heights[0], count)
     else:
