@@ -93,8 +93,11 @@ def _limits(explanation: PlanExplanation) -> ExplanationPart:
         if binding
         else "no limit makes the mission longer: work and distances do"
     )
+    sentences = [words]
+    if explanation.lifted_near and len(rows) > 1:
+        sentences.append("but for separation, times are those before robots wait to keep their distance")
     head = ("limit", "mission would end without it", "margin")
-    return ExplanationPart("Limits", (words,), head, tuple(rows))
+    return ExplanationPart("Limits", tuple(sentences), head, tuple(rows))
 
 
 def _robots(explanation: PlanExplanation) -> ExplanationPart:

@@ -55,7 +55,7 @@ class Charges:
 
     def most_used(self, plan: Plan) -> dict[str, float]:
         """Return the seconds that each robot runs on one charge at most, also if charging ends at once."""
-        found = self._of(plan, self._pilots)
+        found = self._of_ways(plan, self._pilots)
         return {name: max((used for used, _ in uses), default=0.0) for name, uses in found.items()}
 
     def short(self, plan: Plan, names: Collection[str] | None = None) -> set[str]:
@@ -74,7 +74,15 @@ class Charges:
         return max((more / self._allowed(name) for name, more in found.items()), default=0.0)
 
     def _missing(self, plan: Plan, names: Collection[str]) -> dict[str, float]:
-        """Return the seconds by which charges do not suffice, by robot; also of those in arms of choices."""
+        """Return the seconds by which charges do not suffice, by robot."""
+        missing = {
+            name: max((used + more - self._allowed(name) for used, more in uses), default=0.0)
+            for name, uses in self._of_ways(plan, names).items()
+        }
+        return {name: more for name, more in missing.items() if more > _SAME}
+
+    def _of_ways(self, plan: Plan, names: Collection[str]) -> dict[str, list[tuple[float, float]]]:
+        """Return what `_of` does, also of charges in arms of choices."""
         ways = {each.robot: list(_ways(each)) for each in plan.robots if each.robot in names}
         found = dict(self._of(plan, [name for name, each in ways.items() if len(each) == 1]))
         for name, several in ways.items():
@@ -83,11 +91,7 @@ class Charges:
                 found.setdefault(name, []).extend(
                     self._of(replace(plan, robots=(way, *others)), {name})[name]
                 )
-        missing = {
-            name: max((used + more - self._allowed(name) for used, more in uses), default=0.0)
-            for name, uses in found.items()
-        }
-        return {name: more for name, more in missing.items() if more > _SAME}
+        return found
 
     def left(self, plan: Plan) -> dict[str, list[float]]:
         """Return, by robot, the seconds left of a charge at least after each flight, or at the end."""

@@ -37,6 +37,9 @@ _NEAREST = 5
 _FEW_PAIRS = 40
 """Jobs times robots up to which the mission is planned once more without each limit."""
 
+_FEW_APART = 12
+"""Jobs times robots up to which robots are kept apart in those missions, too."""
+
 _SAME = 0.05
 """Seconds below which schedules are the same."""
 
@@ -109,6 +112,7 @@ class PlanExplanation:
         tasks: in the order in which they begin.
         idle: by robot without work: the task that it would do best, and at what cost; None: none was tried.
         apart: whether robots keep apart, so that alternatives are compared before they wait for that.
+        lifted_near: whether missions without a limit are so compared, too.
     """
 
     makespan: float
@@ -119,6 +123,7 @@ class PlanExplanation:
     tasks: tuple[TaskExplanation, ...]
     idle: Mapping[str, tuple[str, Alternative] | None]
     apart: bool = False
+    lifted_near: bool = False
     planned: float = 0.0
 
 
@@ -148,6 +153,9 @@ class _Explaining:
                 break
         self._left = _MOST // max(1, len(self._jobs))
         self._stops = dict[str, list[Position]]()
+        self._apart = distance_to_keep(self._scene) is not None
+        few = len(self._jobs) * len(scene.robots) <= _FEW_APART
+        self._lifted_near = self._apart and (bool(scene.stations) or not few)
 
     def all(self) -> PlanExplanation:
         chain = critical_path(self._timed)
@@ -164,7 +172,8 @@ class _Explaining:
             tuple(sorted(self._limits(), key=lambda each: -each.cost)),
             tuple(tasks),
             {each.robot: _best_for(each.robot, tasks) for each in self._plan.robots if not each.steps},
-            distance_to_keep(self._scene) is not None,
+            self._apart,
+            self._lifted_near,
             self._timed.planned,
         )
 
@@ -272,7 +281,7 @@ class _Explaining:
         scene, found = self._scene, self._found
         if not isinstance(found, Schedule):
             return
-        apart = distance_to_keep(scene) is not None
+        apart = self._apart
         soonest = min(max(self._ends, default=0.0), self._whole.unseparated or inf)
         if scene.stations and self._ends:
             names = ", ".join(f"'{station.name}'" for station in scene.stations)
@@ -323,8 +332,12 @@ class _Explaining:
             asked = {task.name: task.earliest for task in self._whole_scene.tasks}
             held = {task.name for task in scene.tasks if task.earliest is not None} & set(self._plan.earliest)
             with suppress(InfeasibleError):
-                other = plan(begun_no_earlier(near(scene), {name: asked[name] for name in held}))
-                sooner = max(sooner, (self._whole.unseparated or max(self._ends)) - other.makespan)
+                lifted = near(scene) if self._lifted_near or not self._apart else scene
+                other = plan(begun_no_earlier(lifted, {name: asked[name] for name in held}))
+                mine = (
+                    self._whole.unseparated or max(self._ends) if lifted is not scene else self._plan.makespan
+                )
+                sooner = max(sooner, mine - other.makespan)
         return max(0.0, sooner)
 
     def _numbers(self) -> Limit:

@@ -175,6 +175,7 @@ def test_charges_are_counted_along_each_arm_in_which_a_robot_is_charged():
     (branch,) = steps_of(found, "r1", Branch)
     assert branch.end - branch.begin > lone.kinematics.endurance
     assert (team.charges.missing(found), team.charges.short(found)) == (0.0, set())
+    assert 100.0 < team.charges.most_used(found)["r1"] <= 200.0
     tired = with_kinematics(lone, endurance=150.0)
     assert 0.0 < Team(replace(whole, robots=(tired,))).charges.missing(found) <= 1.0 / 3.0
 

@@ -6,6 +6,7 @@ from plain_scenes import road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.planning.explaining import explain
 from mmrs_core.planning.planner import plan
+from mmrs_core.scene import Corridor
 
 TWO = (robot("r1"), robot("r2", (60.0, 0.0, 0.0)))
 CUTS = tuple(range(50, 1000, 50))
@@ -49,6 +50,20 @@ def test_separation_costs_what_the_best_plan_without_it_saves():
     (limit,) = (each for each in explanation.limits if each.name == "separation")
     assert limit.cost == pytest.approx(found.makespan - free.makespan)
     assert limit.cost > 30.0
+
+
+def test_a_limit_costs_what_robots_wait_for_each_other_because_of_it():
+    """Robots that share a corridor go through it one after the other."""
+    corridor = Corridor("gate", ((20.0, 30.0), (20.0, 130.0)), 10.0)
+    works = {"a": visit((20.0, 300.0, 20.0), hold=60.0), "b": visit((60.0, 300.0, 20.0), hold=60.0)}
+    whole = scene((robot("r1"), robot("r2", (40.0, 0.0, 0.0))), works, minimum_separation=10.0)
+    shut = replace(whole, corridors=(corridor,))
+    found, explanation = explained(shut)
+    costs = {each.name: each.cost for each in explanation.limits}
+    assert costs["corridors"] == pytest.approx(found.makespan - plan(whole).makespan)
+    near = replace(shut, minimum_separation=None), replace(whole, minimum_separation=None)
+    assert costs["corridors"] > plan(near[0]).makespan - plan(near[1]).makespan + 1.0
+    assert not explanation.lifted_near
 
 
 def test_an_alternative_that_no_charge_suffices_for_has_a_fault():
