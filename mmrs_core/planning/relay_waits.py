@@ -98,7 +98,7 @@ class Joining:
 
         The relays leave in time, and go home as soon as they may; of robots that would come too near, one
         waits by the clock or for a signal of the other. Where that does not help, relays leave first of all,
-        and wait for all to be home.
+        and wait for all to be home. What charges do not suffice for anyway is refused for that.
         """
         soonest = retimed(self._scene, whole, self._steps(team, needs, in_turns=False))
         apart: Plan | None = None
@@ -106,7 +106,13 @@ class Joining:
             apart = separated(team, soonest)
         told = signalled(team, soonest, SearchLimit(apart), higher=False)
         found = apart if told is None else told
-        return found or separated(team, retimed(self._scene, whole, self._steps(team, needs, in_turns=True)))
+        if found is not None:
+            return found
+        try:
+            return separated(team, retimed(self._scene, whole, self._steps(team, needs, in_turns=True)))
+        except TooNearError:
+            self._refuse_short(team, soonest, needs)
+            raise
 
     def _steps(
         self, team: Team, needs: Mapping[str, _Need], *, in_turns: bool
