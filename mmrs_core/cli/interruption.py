@@ -29,7 +29,7 @@ def interrupted() -> bool:
 
 
 def interruptible(work: Callable[[], int]) -> int:
-    """Return the exit code of some work; 130, after at most one line, if it was interrupted.
+    """Return the exit code of some work; 130, after one line, if it was interrupted.
 
     An interrupt becomes KeyboardInterrupt, so that whatever is open is closed during the exit. Interrupts
     that the process was started to ignore stay ignored. For the main thread.

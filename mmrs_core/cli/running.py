@@ -33,7 +33,8 @@ def run_command(arguments: Sequence[str], program: str) -> int:
         take_as_typed(command, line)
         _keep_examples(command)
         result = command.main(line, prog_name=program, standalone_mode=False, obj=settings)
-        return result if isinstance(result, int) else 0
+        code = result if isinstance(result, int) else 0
+        return _interrupted() if code == INTERRUPTED and interrupted() else code
     except typer.Exit as ending:
         return ending.exit_code
     except (typer.Abort, KeyboardInterrupt):

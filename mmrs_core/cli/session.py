@@ -117,10 +117,7 @@ class CommandStages(Stages):
 
     def stage(self, name: str, make: Callable[[], Result]) -> Result:
         """Return what a stage makes, after telling the observers of it."""
-        result = self.session.stage(name, _DOING[name], make)
-        if name == "plan" and self._effort is not None and self._effort.stopped:
-            tell("interrupted: the best plan by then is kept")
-        return result
+        return self.session.stage(name, _DOING[name], make)
 
     def planned(self, scene: Scene, seed: int) -> Plan:
         """Return the plan of an expanded scene; the first interrupt keeps the best that was found by then."""
@@ -134,8 +131,15 @@ class CommandStages(Stages):
             self._end = monotonic() + self._time_limit
         self._effort = Effort(None if self._end is None else self._end - monotonic(), monotonic, show)
         self._effort.stopped = before is not None and before.stopped
-        with ended_by_interrupt(self._effort.stop):
+        with ended_by_interrupt(self._stop):
             return plan(scene, seed=seed, effort=self._effort)
+
+    def _stop(self) -> bool:
+        """End the search where it has found something to keep, and say so; return whether it has."""
+        keeps = self._effort is not None and self._effort.stop()
+        if keeps:
+            tell("interrupted: the plan is finished with what was found; Ctrl-C again ends without a plan")
+        return keeps
 
     @cached_property
     def explanation(self) -> PlanExplanation:
