@@ -40,7 +40,8 @@ _TOO_DEAR = 1.2
 """Times the mission time without separation from which on signals are sought once more in the end."""
 
 _MOST_SIGNALLED = 2
-"""Plans, the shortest first, whose robots are then kept apart by signals; others only if there is no plan."""
+"""Plans, the shortest first, whose robots are then kept apart by signals, beside the shortest ones in which
+fewer robots leave home; others only if there is no plan."""
 
 
 def kept_apart(
@@ -164,13 +165,22 @@ def best_signalled(
         round(each.makespan, 1): (team, each) for team, each in dear if team.scene.robots == scene.robots
     }
     ordered = [plans[makespan] for makespan in sorted(plans)]
-    last = reversed(ordered[_MOST_SIGNALLED:])
-    for tried, (team, each) in enumerate([*ordered[:_MOST_SIGNALLED], *last]):
-        if found is not None and tried >= _MOST_SIGNALLED:
+    first, rest = ordered[:_MOST_SIGNALLED], ordered[_MOST_SIGNALLED:]
+    for pair in rest:
+        if _number_out(pair[1]) < min(_number_out(each) for _, each in first):
+            first.append(pair)
+    last = [pair for pair in reversed(rest) if pair not in first]
+    for tried, (team, each) in enumerate([*first, *last]):
+        if found is not None and tried >= len(first):
             break
         told = signalled(team, each, SearchLimit(found, effort))
         found = found if told is None else better(told, found)
     return found
+
+
+def _number_out(made: Plan) -> int:
+    """Return how many robots leave home."""
+    return sum(bool(each.steps) for each in made.robots)
 
 
 def better(plan: Plan, best: Plan | None) -> Plan:
