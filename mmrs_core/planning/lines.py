@@ -50,6 +50,14 @@ class Swath:
         return Swath(self.points[::-1], tuple(max(0.0, whole - spot) for spot in reversed(self.spots)))
 
     @property
+    def ends(self) -> Floats:
+        """Return (2, 2): where it begins and ends, or where its only action is, twice."""
+        if len(self.spots) != 1:
+            return self.points[[0, -1]]
+        at = [np.interp(self.spots[0], self.arcs, self.points[:, axis]) for axis in (0, 1)]
+        return np.array([at, at])
+
+    @property
     def length(self) -> float:
         """Metres along all legs."""
         return float(self.arcs[-1])

@@ -78,7 +78,7 @@ def layers_of(pattern: Pattern, start: Point | None, layer: Layer) -> tuple[Sequ
 
 def _from_corner(lines: Sequence[Swath], corner: Point) -> list[Swath]:
     """Return swaths in a good order that begins at the end of one that is farthest towards a corner."""
-    ends = np.array([[line.points[0], line.points[-1]] for line in lines])
+    ends = np.array([line.ends for line in lines])
     first, turned = divmod(int(np.argmax(ends @ np.array(corner))), 2)
     rest = [line for index, line in enumerate(lines) if index != first]
     ends = np.delete(ends, first, axis=0)

@@ -31,7 +31,7 @@ LONGEST = {
     "Lost float": 140.0,
     "Objects in the pool": 368.0,
     "Outfall": 1149.0,
-    "Photos of a farm": 1110.0,
+    "Photos of a farm": 1121.0,
     "Recycling yard after a fire": 504.0,
     "Thermal inspection": 501.0,
     "Two fields": 199.0,
