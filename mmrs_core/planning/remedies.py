@@ -198,7 +198,7 @@ def _homes(team: Team, jobs: Sequence[Job], task: str, name: str, index: int) ->
         home = nearer(metres).home
         if is_plannable(_with(scene, [name], lambda _: nearer(metres)), jobs):
             far = dist(home[:2], goal[:2])
-            yield f"a home at ({home[0]:.0f}, {home[1]:.0f}), {far:.0f} m away,"
+            yield f"a home at ({home[0]:.0f}, {home[1]:.0f}), {far:.0f} m from '{task}'"
 
 
 def for_diversions(team: Team, jobs: Sequence[Job]) -> Iterator[str]:

@@ -76,7 +76,7 @@ def test_lifetimes_that_are_proposed_for_long_tasks_are_enough_for_the_whole_mis
 
 def test_a_home_that_is_proposed_is_near_enough_and_two_metres_before_is_not():
     whole = scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))})
-    ((east, away),) = re.findall(r"a home at \((\d+), 0\), (\d+) m away", refusal(whole))
+    ((east, away),) = re.findall(r"a home at \((\d+), 0\), (\d+) m from 'a'", refusal(whole))
     assert int(east) + int(away) == 1000
     assert plan(replace(whole, robots=(replace(whole.robots[0], home=(float(east), 0.0, 0.0)),)))
     refusal(replace(whole, robots=(replace(whole.robots[0], home=(float(east) - 2.0, 0.0, 0.0)),)))
