@@ -103,12 +103,13 @@ def _paths_along(part: Part, distance: float, start: Point) -> list[list[Point]]
     """Return the closed paths at a distance outside of a border, each from its corner nearest to the last.
 
     There are several around a courtyard with a narrow mouth, or inside of rooms that a narrow neck joins. On
-    all of them, the border is on the same side. Corners that are dense, as on a border drawn freehand, are
-    left out.
+    all of them, the border is on the same side. Others than the first of up to a metre are left out, and so
+    are corners that are dense, as on a border drawn freehand.
     """
     grown = shapely.buffer(polygon(ring(part, "shell")), distance, join_style="mitre", mitre_limit=MITRE)
     found = [orient(each, -1.0 if flag(part, "clockwise") else 1.0) for each in parts(grown)]
-    left = [each.coords[:-1] for shape in found for each in (shape.exterior, *shape.interiors)]
+    rings = [each for shape in found for each in (shape.exterior, *shape.interiors)]
+    left = [each.coords[:-1] for each in rings if each is rings[0] or each.length > LEAST]
     if not left:
         raise InfeasibleError(f"nothing of the area is {-distance:g} m from its border")
     paths = list[list[Point]]()
@@ -128,7 +129,9 @@ def _unfaced(part: Part, distance: float, paths: Sequence[Sequence[Point]], up: 
     """Yield where a border is farther from all paths along it than where two sides meet at a right angle."""
     shell = polygon(ring(part, "shell"))
     border = shapely.LinearRing(shell.exterior.coords)
-    seen = shapely.buffer([shapely.LineString(path) for path in paths], FACED * abs(distance) + UNEVEN)
+    seen = shapely.buffer(
+        [shapely.LineString([*path, path[0]]) for path in paths], FACED * abs(distance) + UNEVEN
+    )
     left = shapely.difference(shapely.LineString(border.coords), shapely.union_all(seen))
     for each in shapely.get_parts(shapely.line_merge(left)):
         if each.length > LEAST:

@@ -134,6 +134,15 @@ def test_a_courtyard_with_a_narrow_mouth_is_gone_around_inside(robot, scene, tas
     assert [round(gap.length, 1) for gap in work.gaps] == [1.4, 1.4]
 
 
+def test_a_perimeter_in_the_middle_of_an_area_may_be_short(robot, scene, task):
+    square = at_ground((0, 0), (20, 0), (20, 20), (0, 20))
+    given = perimeter(task, shell=square, distance=-9.9, initialPosition=(5.0, 5.0, 0.0))
+    places = {
+        tuple(np.round(p, 1)) for each in perimeter_work(given, robot(), scene()).strokes for p in each.points
+    }
+    assert places <= {(x, y, 10.0) for x in (9.9, 10.0, 10.1) for y in (9.9, 10.0, 10.1)}
+
+
 def test_a_narrow_notch_is_left_out_of_a_perimeter(robot, scene, task):
     shell = at_ground((0, 0), (60, 0), (60, 50), (36, 50), (36, 10), (24, 10), (24, 50), (0, 50))
     (gap,) = perimeter_work(perimeter(task, shell=shell), robot(), scene()).gaps

@@ -4,7 +4,7 @@ from math import cos, dist, sin, sqrt
 
 import pytest
 import shapely
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mmrs_survey.lines import cuts_between, even_distances, passes, without_dense
 from mmrs_survey.roads import road_work
@@ -216,6 +216,7 @@ def test_a_line_without_actions_may_be_split_at_its_corners_and_every_fifty_metr
     assert cuts_between(LINE, ()) == pytest.approx((50.0, 100.0, 100.0 + 80.0998 / 2), abs=0.01)
 
 
+@settings(deadline=None)
 @given(
     st.lists(
         st.tuples(st.floats(60.0, 200.0), st.integers(-1000, 1000).map(lambda turn: turn / 1000)),
