@@ -140,6 +140,8 @@ def _beside(middle: shapely.LineString, offset: float) -> Iterator[tuple[Positio
         return
     curve = shapely.offset_curve(shapely.force_2d(middle), offset, join_style="mitre")
     for part in shapely.get_parts(curve):
+        if shapely.is_empty(part):  # inside of a hairpin
+            continue
         yield tuple(_position(middle, east, north) for east, north in part.coords)
 
 

@@ -239,6 +239,15 @@ def test_passes_cover_all_of_a_corridor(steps, width, strip):
     assert corridor.difference(seen).area <= 1e-3 * corridor.area
 
 
+def test_a_pass_that_a_hairpin_leaves_no_room_for_is_left_out():
+    points = [(0.0, 60.0, 20.0), (200.0, 60.0, 20.0), (205.0, 90.0, 20.0), (0.0, 95.0, 20.0)]
+    corridor = shapely.LineString([point[:2] for point in points]).buffer(50.0, cap_style="flat")
+    lines = passes(points, 100.0, 40.0)
+    seen = shapely.union_all([shapely.LineString([p[:2] for p in line]).buffer(20.0) for line in lines])
+    assert all(len(line) > 1 for line in lines)
+    assert corridor.difference(seen).area <= 1e-3 * corridor.area
+
+
 @pytest.mark.parametrize(
     ("features", "reason"),
     [
