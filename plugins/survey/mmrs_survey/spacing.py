@@ -34,12 +34,14 @@ class Shots:
 def shots_of(part: Part, robot: Robot, height: float, *, sideways: bool = False) -> Shots:
     """Return how photos are taken along paths, as the task states it.
 
+    Overlaps alone ask for photos as near as the camera's optics make them so.
+
     Args:
         height: of the camera above what it photographs, metres.
         sideways: whether it looks aside, so that the width of a photo lies along the path.
 
     Raises:
-        InfeasibleError: the robot has no camera for that, or it is too coarse.
+        InfeasibleError: the robot has no camera for that, it is too coarse, or what it covers is unknown.
     """
     width, length = number(part, "footprintWidth"), number(part, "footprintLength")
     side, front = (1.0 - (number(part, name) or 0.0) for name in ("sideOverlap", "frontOverlap"))
@@ -47,11 +49,16 @@ def shots_of(part: Part, robot: Robot, height: float, *, sideways: bool = False)
     every = number(part, "photoDistance") or (None if along is None else along * front)
     strip = None if across is None else across * side
     resolution = number(part, "groundResolution")
-    if every is None and resolution is None:
+    overlaps = side < 1.0 or front < 1.0
+    if every is None and resolution is None and not overlaps:
         return Shots(None, 0.0, strip, Capture(None, number(part, "speed")))
     camera = device_for(robot.type, text(part, "actionName"), text(part, "deviceId"))
-    if resolution is not None:
-        seen = footprint_of(camera.properties, height, resolution, camera.id)
+    if resolution is not None or every is None:
+        seen = (
+            _footprint(part, camera, height)
+            if resolution is None
+            else footprint_of(camera.properties, height, resolution, camera.id)
+        )
         along, across = (seen.width, seen.length) if sideways else (seen.length, seen.width)
         every, strip = every or along * front, across * side
     spacing = every or 0.0

@@ -25,6 +25,19 @@ def road(task, **more):
     return task("RoadTask", **{**given, **more})
 
 
+def test_overlaps_alone_ask_for_photos_as_near_as_the_optics_make_them(robot, scene, task):
+    """From 20 m, a photo shows 30 by 20 m."""
+    asked = road(task, width=40.0, frontOverlap=0.5, sideOverlap=0.5)
+    strokes = road_work(asked, robot(), scene()).strokes
+    assert len(strokes) == 3
+    for each in strokes:
+        at = [0.0, *(action.at for action in each.actions)]
+        assert len(at) > 10
+        assert all(two - one <= 10.0 + 1e-9 for one, two in pairwise(at))
+    with pytest.raises(InfeasibleError, match="does not state what one photo covers"):
+        road_work(asked, robot(properties={}), scene())
+
+
 def test_a_line_without_width_is_followed_once_at_its_altitude(robot, scene, task):
     (stroke,) = road_work(road(task), robot(), scene()).strokes
     assert stroke.points == ((0.0, 0.0, 20.0), (100.0, 0.0, 20.0), (100.0, 80.0, 20.0))
