@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from time import monotonic
@@ -138,7 +139,10 @@ class CommandStages(Stages):
         """End the search where it has found something to keep, and say so; return whether it has."""
         keeps = self._effort is not None and self._effort.stop()
         if keeps:
-            tell("interrupted: the plan is finished with what was found; Ctrl-C again ends without a plan")
+            with suppress(RuntimeError):  # of an interrupt in the middle of another line
+                tell(
+                    "interrupted: the plan is finished with what was found; Ctrl-C again ends without a plan"
+                )
         return keeps
 
     @cached_property
